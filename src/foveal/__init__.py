@@ -1,0 +1,3 @@
+"""foveal gives a 3D surface detail where one looks."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,1 @@
+"""Ground floor: compilation, validation, progress, tasks, files, errors. Knows no geometry."""

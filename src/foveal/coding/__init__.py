@@ -1,0 +1,1 @@
+"""Integer and entropy streams; knows no geometry."""

@@ -1,0 +1,1 @@
+"""The .fov file: header, index, chunks with checksums."""

@@ -1,0 +1,1 @@
+"""Multiresolution patches: partition, simplify, bound, encode, build."""

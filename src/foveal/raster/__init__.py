@@ -1,0 +1,1 @@
+"""The CPU rasteriser: deterministic pictures without a GPU or a display."""

@@ -1,0 +1,1 @@
+"""HTTP on localhost: byte ranges, the viewer, the scene."""

@@ -1,0 +1,1 @@
+"""Camera, frustum and projected size."""

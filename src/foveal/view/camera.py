@@ -1,0 +1,175 @@
+"""The one camera: where the eye is, what it sees, how finely."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from foveal.base.errors import FovealError
+
+__all__ = ["Camera"]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera. Right-handed; looks along -z of its own frame, y up, as in OpenGL.
+
+    Attributes
+    ----------
+    position, target, up : (3,) float64
+        The eye, the point it looks at, and a direction that shall point up in the picture.
+    field_of_view : float
+        Vertical, in radians.
+    width, height : int
+        The picture's size in pixels.
+    near, far : float
+        Distances of the clipping planes, in the unit of the scene.
+
+    Examples
+    --------
+    >>> camera = Camera.of([0, 0, 10], [0, 0, 0], width=200, height=100)
+    >>> camera.basis()[2]  # backwards
+    array([0., 0., 1.])
+    """
+
+    position: NDArray[np.float64]
+    target: NDArray[np.float64]
+    up: NDArray[np.float64]
+    field_of_view: float
+    width: int
+    height: int
+    near: float
+    far: float
+
+    @classmethod
+    def of(
+        cls,
+        position: ArrayLike,
+        target: ArrayLike,
+        /,
+        *,
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        field_of_view: float = math.radians(45),
+        width: int = 1280,
+        height: int = 720,
+        near: float | None = None,
+        far: float | None = None,
+    ) -> Self:
+        """A checked camera; near and far default to 1/1000 and 1000 times the distance to the target."""
+        eye, aim, above = (_triple(v, n) for v, n in ((position, "position"), (target, "target"), (up, "up")))
+        distance = float(np.linalg.norm(aim - eye))
+        if distance == 0:
+            raise FovealError("camera: position and target are the same point; move one of them.")
+        if np.linalg.norm(np.cross(aim - eye, above)) < 1e-12 * distance * np.linalg.norm(above):
+            raise FovealError("camera: it looks along its own up direction; give another up.")
+        if not 0 < field_of_view < math.pi:
+            raise FovealError(
+                f"camera: the field of view must be between 0 and 180 degrees, got {field_of_view} radians."
+            )
+        if width < 1 or height < 1:
+            raise FovealError(f"camera: the picture must have at least one pixel, got {width} x {height}.")
+        near = distance / 1000 if near is None else near
+        far = distance * 1000 if far is None else far
+        if not 0 < near < far:
+            raise FovealError(f"camera: near and far must satisfy 0 < near < far, got {near} and {far}.")
+        return cls(eye, aim, above, float(field_of_view), int(width), int(height), float(near), float(far))
+
+    @classmethod
+    def around(
+        cls,
+        low: ArrayLike,
+        high: ArrayLike,
+        /,
+        *,
+        direction: ArrayLike = (0.3, 0.25, 1.0),
+        up: ArrayLike = (0.0, 1.0, 0.0),
+        **options: Any,
+    ) -> Self:
+        """A camera that sees the whole box `low` to `high` from `direction` (from the box to the eye)."""
+        low, high = _triple(low, "low"), _triple(high, "high")
+        angle = options.get("field_of_view", math.radians(45))
+        aspect = options.get("width", 1280) / options.get("height", 720)
+        half = min(angle / 2, math.atan(math.tan(angle / 2) * aspect))
+        radius = max(float(np.linalg.norm(high - low)) / 2, 1e-300)
+        towards = _triple(direction, "direction")
+        centre = (low + high) / 2
+        eye = centre + towards / np.linalg.norm(towards) * radius / math.sin(half)
+        return cls.of(eye, centre, up=up, **options)
+
+    def basis(self) -> NDArray[np.float64]:
+        """(3, 3): the camera's right, up and backward unit vectors as rows."""
+        backward = self.position - self.target
+        backward = backward / np.linalg.norm(backward)
+        right = np.cross(self.up, backward)
+        right = right / np.linalg.norm(right)
+        return np.stack([right, np.cross(backward, right), backward])
+
+    def pixels_per_radian(self) -> float:
+        """Picture height over 2 tan(field of view / 2): pixels of a unit length at unit distance."""
+        return self.height / (2 * math.tan(self.field_of_view / 2))
+
+    def frustum(self) -> NDArray[np.float64]:
+        """(5, 4): the planes near, left, right, bottom, top as (normal, offset), normals unit and inward.
+
+        A point x is inside a plane where `normal @ x + offset >= 0`. The far plane is left out: what is
+        far is small, and selection by projected size deals with it.
+        """
+        right, up, backward = self.basis()
+        tan_y = math.tan(self.field_of_view / 2)
+        tan_x = tan_y * self.width / self.height
+        normals = [
+            -backward,
+            (right - tan_x * backward) / math.hypot(1, tan_x),
+            (-right - tan_x * backward) / math.hypot(1, tan_x),
+            (up - tan_y * backward) / math.hypot(1, tan_y),
+            (-up - tan_y * backward) / math.hypot(1, tan_y),
+        ]
+        planes = [(*n, -float(n @ self.position)) for n in normals]
+        planes[0] = (*normals[0], planes[0][3] - self.near)
+        return np.array(planes)
+
+    def to_json(self) -> dict[str, Any]:
+        """A camera file's content; angles in degrees, as everywhere outside Python."""
+        return {
+            "position": self.position.tolist(),
+            "target": self.target.tolist(),
+            "up": self.up.tolist(),
+            "field_of_view_degrees": math.degrees(self.field_of_view),
+            "size": [self.width, self.height],
+        }
+
+    @classmethod
+    def from_json(cls, data: Any, /, *, name: str = "camera") -> Self:
+        """A camera from what `to_json` gives; missing keys take their defaults.
+
+        Raises
+        ------
+        FovealError
+            If `data` is not such an object, in a sentence that begins with `name`.
+        """
+        try:
+            size = data.get("size", [1280, 720])
+            return cls.of(
+                data["position"],
+                data["target"],
+                up=data.get("up", (0.0, 1.0, 0.0)),
+                field_of_view=math.radians(data.get("field_of_view_degrees", 45.0)),
+                width=size[0],
+                height=size[1],
+            )
+        except FovealError as error:
+            raise FovealError(f"{name}: {error}") from error
+        except (AttributeError, KeyError, TypeError, IndexError, ValueError) as error:
+            raise FovealError(
+                f'{name}: a camera needs "position" and "target", three numbers each, and may have "up", '
+                f'"field_of_view_degrees" and "size" ({type(error).__name__}: {error}).'
+            ) from error
+
+
+def _triple(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    array = np.array(values, dtype=np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise FovealError(f"camera: {name} must be three finite numbers, got {values!r}.")
+    return array
