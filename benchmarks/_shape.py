@@ -110,10 +110,9 @@ def report(room: str, rows: Iterable[Row], options: argparse.Namespace) -> None:
     for row in rows:
         kept.append(row)
         print(_line(row), flush=True)
+    reached = sum(row.is_reached() is True for row in kept)
     missed = [row.key for row in kept if row.is_reached() is False]
-    print(
-        f"{sum(row.is_reached() is True for row in kept)} bars reached, {len(missed)} missed: {', '.join(missed) or '-'}"
-    )
+    print(f"{reached} bars reached, {len(missed)} missed: {', '.join(missed) or '-'}")
     if options.json:
         content = {
             "room": room,
