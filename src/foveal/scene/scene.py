@@ -1,0 +1,256 @@
+"""scene.json, version 1: assets put together, with named views.
+
+    {"version": 1,
+     "title": "Statue",
+     "layers": [{"name": "statue", "asset": "data/statue.fov", "visible": true}],
+     "views": [{"name": "front", "camera": {"position": [0, 0, 5], "target": [0, 0, 0]}}],
+     "background": "#20242a"}
+
+`title`, `visible`, `views` and `background` may be left out. An asset is a path relative to the folder of
+the scene.json, with forward slashes, that does not leave it: a scene that came from elsewhere must not
+make a server give out other files. Keys that are not known are ignored, for what later versions add.
+"""
+
+import json
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from foveal.base.errors import FovealError
+from foveal.base.files import whole_file
+from foveal.container import open_container
+from foveal.view.camera import Camera
+
+__all__ = ["Layer", "Scene", "View", "asset_names", "read_scene", "scene_json", "scene_of", "write_scene"]
+
+VERSION = 1
+_MAX_BYTES = 16 << 20  # a scene.json is small; more than this is something else
+_RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """One asset of a scene.
+
+    Attributes
+    ----------
+    name : str
+        For people.
+    path : Path
+        The `.fov`.
+    is_visible : bool
+        Whether it is shown at first.
+    """
+
+    name: str
+    path: Path
+    is_visible: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A camera with a name."""
+
+    name: str
+    camera: Camera
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Assets put together: what the viewer shows, `render` draws and `publish` copies.
+
+    Attributes
+    ----------
+    title : str
+        For people.
+    layers : tuple of Layer
+        At least one.
+    views : tuple of View
+        Named cameras.
+    background : str or None
+        sRGB as "#rrggbb"; None lets the viewer choose by its dark or light dress.
+    """
+
+    title: str
+    layers: tuple[Layer, ...]
+    views: tuple[View, ...] = ()
+    background: str | None = None
+
+
+def scene_of(path: str | os.PathLike[str], /, *, title: str | None = None) -> Scene:
+    """A scene of one layer from one `.fov`.
+
+    Raises
+    ------
+    FovealError
+        If there is no such file or it is not a `.fov` that this version reads.
+    """
+    path = Path(path)
+    with open_container(path) as file:
+        file.expect("multires", 1)
+    name = title or path.stem
+    return Scene(name, (Layer(name, path.resolve()),))
+
+
+def read_scene(path: str | os.PathLike[str], /) -> Scene:
+    """Read a scene.json, or take a lone `.fov` as a scene of one layer.
+
+    Raises
+    ------
+    FovealError
+        In one sentence: not JSON, an unknown version, a key of the wrong kind, an asset that is
+        missing, not a `.fov`, or outside the scene's folder.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".json":
+        return scene_of(path)
+    data = _load(path)
+    if not isinstance(data, dict) or "version" not in data or "layers" not in data:
+        raise FovealError(f'{path}: this is not a scene.json; it needs "version" and "layers".')
+    if data["version"] != VERSION:
+        raise FovealError(
+            f"{path}: scene version {data['version']!r} is not known; this foveal reads version {VERSION}."
+        )
+    layers = _list(data, "layers", path)
+    if not layers:
+        raise FovealError(f'{path}: "layers" is empty; name at least one asset.')
+    background = data.get("background")
+    if background is not None and not (
+        isinstance(background, str) and re.fullmatch("#[0-9a-fA-F]{6}", background)
+    ):
+        raise FovealError(f'{path}: "background" must be a colour such as "#20242a", got {background!r}.')
+    return Scene(
+        _text(data, "title", path.parent.resolve().name, path),
+        tuple(_layer(layer, f'layer {n} of "layers"', path) for n, layer in enumerate(layers, 1)),
+        tuple(_view(view, n, path) for n, view in enumerate(_list(data, "views", path), 1)),
+        background,
+    )
+
+
+def _load(path: Path) -> Any:
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise FovealError(f"{path}: too large for a scene.json ({path.stat().st_size} bytes).")
+        return json.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError as error:
+        raise FovealError(f"{path}: there is no such file.") from error
+    except OSError as error:
+        raise FovealError(f"{path}: cannot be read ({error.strerror}).") from error
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, FovealError):
+            raise
+        raise FovealError(f"{path}: this is not JSON ({error}).") from error
+
+
+def _list(data: Mapping[str, Any], key: str, path: Path) -> list[Any]:
+    value = data.get(key, [])
+    if not isinstance(value, list) or len(value) > 10_000:
+        raise FovealError(f'{path}: "{key}" must be a list, of at most 10,000 members.')
+    return value
+
+
+def _text(data: Mapping[str, Any], key: str, default: str, path: Path) -> str:
+    value = data.get(key, default)
+    if not isinstance(value, str) or len(value) > 1000:
+        raise FovealError(f'{path}: "{key}" must be a short text, got {value!r:.60}.')
+    return value
+
+
+def _layer(data: Any, where: str, path: Path) -> Layer:
+    if not isinstance(data, dict) or not isinstance(data.get("asset"), str):
+        raise FovealError(f'{path}: {where} needs an "asset", the path of a .fov file.')
+    asset = _contained(data["asset"], where, path)
+    is_visible = data.get("visible", True)
+    if not isinstance(is_visible, bool):
+        raise FovealError(f'{path}: "visible" of {where} must be true or false, got {is_visible!r:.60}.')
+    with open_container(asset) as file:
+        file.expect("multires", 1)
+    return Layer(_text(data, "name", asset.stem, path), asset, is_visible)
+
+
+def _contained(asset: str, where: str, path: Path) -> Path:
+    """The asset's own path, links resolved, if it lies in the folder of the scene.json."""
+    folder = path.parent.resolve()
+    pure = PurePosixPath(asset)
+    is_plain = (
+        asset and not pure.is_absolute() and ".." not in pure.parts and not re.search(r"[\\:\0]", asset)
+    )
+    found = (folder / pure).resolve() if is_plain else None
+    if found is None or not found.is_relative_to(folder):
+        raise FovealError(
+            f"{path}: the asset {asset!r} of {where} leaves the folder of the scene. Move the file there."
+        )
+    return found
+
+
+def _view(data: Any, number: int, path: Path) -> View:
+    if not isinstance(data, dict):
+        raise FovealError(f'{path}: view {number} must have a "name" and a "camera".')
+    name = _text(data, "name", f"view {number}", path)
+    return View(name, Camera.from_json(data.get("camera"), name=f"{path}: view {name!r}"))
+
+
+def asset_names(scene: Scene, /) -> dict[Path, str]:
+    """A file name for each asset that is safe in a URL and on any file system, no two alike.
+
+    Examples
+    --------
+    >>> layers = (Layer("a", Path("x/My Statue.fov")), Layer("b", Path("y/my statue.fov")))
+    >>> list(asset_names(Scene("two", layers)).values())
+    ['My-Statue.fov', 'my-statue-2.fov']
+    """
+    names: dict[Path, str] = {}
+    taken: set[str] = set()
+    for layer in scene.layers:
+        if layer.path in names:  # one asset may be in two layers
+            continue
+        stem = re.sub("[^A-Za-z0-9_.-]+", "-", layer.path.stem).strip("-.")[:80] or "asset"
+        if stem.lower() in _RESERVED:
+            stem = f"{stem}-asset"
+        name, number = stem, 1
+        while name.lower() in taken:  # Windows and macOS do not tell cases apart
+            number += 1
+            name = f"{stem}-{number}"
+        taken.add(name.lower())
+        names[layer.path] = f"{name}.fov"
+    return names
+
+
+def scene_json(scene: Scene, addresses: Mapping[Path, str], /) -> bytes:
+    """The scene.json's bytes, with each asset at its address."""
+    data: dict[str, Any] = {
+        "version": VERSION,
+        "title": scene.title,
+        "layers": [
+            {"name": layer.name, "asset": addresses[layer.path], "visible": layer.is_visible}
+            for layer in scene.layers
+        ],
+        "views": [{"name": view.name, "camera": view.camera.to_json()} for view in scene.views],
+    }
+    if scene.background is not None:
+        data["background"] = scene.background
+    return (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def write_scene(scene: Scene, path: str | os.PathLike[str], /) -> None:
+    """Write a scene.json beside or above its assets; it appears whole or not at all.
+
+    Raises
+    ------
+    FovealError
+        If an asset lies outside the folder of `path`, where no reader would accept it.
+    """
+    path = Path(path)
+    folder = path.parent.resolve()
+    for layer in scene.layers:
+        if not layer.path.resolve().is_relative_to(folder):
+            raise FovealError(
+                f"{path}: the asset {layer.path} lies outside this folder. "
+                "Move it there, or use 'foveal publish'."
+            )
+    addresses = {p.path: p.path.resolve().relative_to(folder).as_posix() for p in scene.layers}
+    with whole_file(path) as out:
+        out.write(scene_json(scene, addresses))
