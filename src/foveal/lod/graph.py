@@ -8,12 +8,18 @@ the patches of expanded nodes whose finer node is not expanded are a surface wit
 (Cignoni et al. 2005, Batched multi triangulation, section 3).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from foveal.base.errors import FovealError
+
 __all__ = ["Graph"]
+
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -39,6 +45,12 @@ class Graph:
         What the patch holds.
     patch_bytes : (p,) int64
         Its encoded size. A node's patches lie one after the other in the node's chunk.
+
+    Raises
+    ------
+    FovealError
+        If the columns' lengths do not fit together, or a patch names a node that does not come after
+        its own. Bounds that are not nested are accepted: a cut stays conforming with any bounds.
     """
 
     centres: NDArray[np.float64]
@@ -49,9 +61,83 @@ class Graph:
     triangles: NDArray[np.int64]
     vertices: NDArray[np.int64]
     patch_bytes: NDArray[np.int64]
-    parents: list[NDArray[np.int32]] = field(init=False)
 
     def __post_init__(self) -> None:
-        owner = np.repeat(np.arange(len(self.errors), dtype=np.int32), np.diff(self.first_patch))
-        parents = [np.unique(owner[self.finer == node]) for node in range(len(self.errors))]
-        object.__setattr__(self, "parents", parents)
+        nodes, patches = len(self.errors), len(self.finer)
+        if nodes == 0:
+            raise FovealError("graph: it has no node.")
+        node_columns = (len(self.centres), len(self.radii), len(self.first_patch) - 1)
+        patch_columns = (len(self.triangles), len(self.vertices), len(self.patch_bytes))
+        if any(n != nodes for n in node_columns) or any(n != patches for n in patch_columns):
+            raise FovealError("graph: its columns have different lengths.")
+        if (
+            self.first_patch[0] != 0
+            or self.first_patch[-1] != patches
+            or (np.diff(self.first_patch) < 0).any()
+        ):
+            raise FovealError("graph: the patches of its nodes do not follow one another.")
+        if ((self.finer != -1) & (self.finer <= self.owner)).any() or (self.finer >= nodes).any():
+            raise FovealError("graph: a patch is refined by a node that does not come after its own.")
+
+    @cached_property
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Centres, radii and errors as kernels take them: what is read from a file may be read-only."""
+        return _for_kernels(np.float64, self.centres, self.radii, self.errors)
+
+    @cached_property
+    def owner(self) -> NDArray[np.int32]:
+        """(p,): the node that holds each patch."""
+        counts = np.diff(self.first_patch)
+        return np.repeat(np.arange(len(self.errors), dtype=np.int32), counts)
+
+    @cached_property
+    def links(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]:
+        """Both directions of the graph: first_parent (n + 1,), parents, first_child (n + 1,), children.
+
+        The parents of node i are `parents[first_parent[i]:first_parent[i + 1]]`, each once, rising; its
+        children likewise.
+        """
+        count = len(self.errors)
+        refined = self.finer >= 0
+        pairs = np.unique(self.owner[refined].astype(np.int64) * count + self.finer[refined])
+        parent, child = pairs // count, pairs % count
+        by_child = np.argsort(child, kind="stable")
+        return (
+            np.searchsorted(child[by_child], np.arange(count + 1)).astype(np.int32),
+            parent[by_child].astype(np.int32),
+            np.searchsorted(parent, np.arange(count + 1)).astype(np.int32),
+            child.astype(np.int32),
+        )
+
+    @cached_property
+    def parents(self) -> list[NDArray[np.int32]]:
+        """The parents of each node, rising."""
+        first, parents, _, _ = self.links
+        return np.split(parents, first[1:-1])
+
+    @cached_property
+    def patches(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+        """First patches, finer nodes and triangles as kernels take them."""
+        return _for_kernels(np.int64, self.first_patch, self.finer, self.triangles)
+
+    @cached_property
+    def node_bytes(self) -> NDArray[np.int64]:
+        """(n,): the encoded size of each node's patches."""
+        total = np.concatenate([[0], np.cumsum(self.patch_bytes, dtype=np.int64)])
+        return total[self.first_patch[1:]] - total[self.first_patch[:-1]]
+
+    @cached_property
+    def hidden_triangles(self) -> NDArray[np.int64]:
+        """(n,): how many triangles a node hides when it is expanded: those of the patches it refines."""
+        refined = self.finer >= 0
+        out = np.zeros(len(self.errors), dtype=np.int64)
+        np.add.at(out, self.finer[refined], self.triangles[refined])
+        return out
+
+
+def _for_kernels(
+    dtype: type[Scalar], a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]
+) -> tuple[NDArray[Scalar], NDArray[Scalar], NDArray[Scalar]]:
+    # One signature only: each further one would be compiled anew.
+    needs = ["C_CONTIGUOUS", "WRITEABLE"]
+    return np.require(a, dtype, needs), np.require(b, dtype, needs), np.require(c, dtype, needs)
