@@ -9,11 +9,11 @@ import json
 from pathlib import Path
 
 import numpy as np
-from lod import naive_select
-from lod.random_graphs import random_model, random_view
 
 from foveal.lod.graph import Graph
 from foveal.view.camera import Camera
+from lod import naive_select
+from lod.random_graphs import random_model, random_view
 
 PATH = Path(__file__).parents[2] / "spec" / "golden" / "selection.json"
 SIZES = [(6, 1), (10, 2), (40, 6), (60, 12), (90, 24), (150, 40)]  # atoms, leaves

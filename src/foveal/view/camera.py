@@ -62,7 +62,7 @@ class Camera:
         distance = float(np.linalg.norm(aim - eye))
         if distance == 0:
             raise FovealError("camera: position and target are the same point; move one of them.")
-        if np.linalg.norm(np.cross(aim - eye, above)) < 1e-12 * distance * np.linalg.norm(above):
+        if not np.linalg.norm(np.cross(aim - eye, above)) > 1e-12 * distance * np.linalg.norm(above):
             raise FovealError("camera: it looks along its own up direction; give another up.")
         if not 0 < field_of_view < math.pi:
             raise FovealError(
@@ -161,7 +161,7 @@ class Camera:
             )
         except FovealError as error:
             raise FovealError(f"{name}: {error}") from error
-        except (AttributeError, KeyError, TypeError, IndexError, ValueError) as error:
+        except (AttributeError, KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
             raise FovealError(
                 f'{name}: a camera needs "position" and "target", three numbers each, and may have "up", '
                 f'"field_of_view_degrees" and "size" ({type(error).__name__}: {error}).'
