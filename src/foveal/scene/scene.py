@@ -194,11 +194,11 @@ def _view(data: Any, number: int, path: Path) -> View:
 
 
 def asset_names(scene: Scene, /) -> dict[Path, str]:
-    """A file name for each asset that is safe in a URL and on any file system, no two alike.
+    """A file name for each asset, after its layer, safe in a URL and on any file system, no two alike.
 
     Examples
     --------
-    >>> layers = (Layer("a", Path("x/My Statue.fov")), Layer("b", Path("y/my statue.fov")))
+    >>> layers = (Layer("My Statue", Path("x/a.fov")), Layer("my statue", Path("y/a.fov")))
     >>> list(asset_names(Scene("two", layers)).values())
     ['My-Statue.fov', 'my-statue-2.fov']
     """
@@ -207,7 +207,7 @@ def asset_names(scene: Scene, /) -> dict[Path, str]:
     for layer in scene.layers:
         if layer.path in names:  # one asset may be in two layers
             continue
-        stem = re.sub("[^A-Za-z0-9_.-]+", "-", layer.path.stem).strip("-.")[:80] or "asset"
+        stem = re.sub("[^A-Za-z0-9_.-]+", "-", layer.name).strip("-.")[:80] or "asset"
         if stem.lower() in _RESERVED:
             stem = f"{stem}-asset"
         name, number = stem, 1

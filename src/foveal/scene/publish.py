@@ -1,0 +1,104 @@
+"""A folder of static files that any web server can host: the viewer, scene.json, and the data."""
+
+import os
+import shutil
+from pathlib import Path
+
+from foveal.base.errors import FovealError
+from foveal.base.files import whole_folder
+from foveal.base.progress import SILENT, Progress
+
+from .scene import Scene, asset_names, scene_json
+from .viewer_files import viewer_files
+
+__all__ = ["publish"]
+
+_README = """\
+{title}
+
+This folder is a web site: upload it as it is to any web server or object store, and open index.html
+there. It needs no program on the server, and no network but the server's own.
+
+- Servers that answer byte ranges (nginx, Apache, Caddy, S3 and most others do) send only what is looked
+  at. Without ranges it works too: each file is then loaded once, whole.
+- Opening index.html from the disk does not work, as browsers do not let a page read files beside it. To
+  look at it here:   python3 -m http.server --bind 127.0.0.1   and open http://127.0.0.1:8000
+- Do not let the server compress .fov files: they are compressed already, and most servers give up
+  ranges for what they compress. Compress .js, .css, .html and .json.
+- .wasm must be sent as application/wasm, .js as text/javascript. Most servers know.
+
+Made with foveal.
+"""
+
+
+def publish(
+    scene: Scene,
+    folder: str | os.PathLike[str],
+    /,
+    *,
+    force: bool = False,
+    viewer: str | os.PathLike[str] | None = None,
+    progress: Progress = SILENT,
+) -> Path:
+    """Write `scene` as a web site into `folder`, which appears whole or not at all.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to publish.
+    folder
+        New, or empty, or with `force` one that was published before.
+    force : bool
+        Replace an earlier publication.
+    viewer
+        A folder with a built viewer; by default the one that comes with foveal.
+    progress : Progress
+        Told the bytes copied.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    FovealError
+        If the viewer is not built, or the folder must not be replaced.
+    """
+    folder = Path(folder)
+    if force:
+        _refuse_to_replace(folder, scene)
+    files = viewer_files(viewer)
+    names = asset_names(scene)
+    total = sum(path.stat().st_size for path in names)
+    with whole_folder(folder, force=force) as part, progress.stage("copying", total) as stage:
+        for name, source in files.items():
+            target = part / name
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(source, target)
+        (part / "data").mkdir(exist_ok=True)
+        for source, name in names.items():
+            with source.open("rb") as stream, (part / "data" / name).open("xb") as out:
+                while piece := stream.read(8 << 20):
+                    out.write(piece)
+                    stage.advance(len(piece))
+        text = scene_json(scene, {path: f"data/{name}" for path, name in names.items()})
+        (part / "scene.json").write_bytes(text)
+        (part / "README.txt").write_text(_README.format(title=scene.title), encoding="utf-8")
+    return folder
+
+
+def _refuse_to_replace(folder: Path, scene: Scene) -> None:
+    """Force deletes what was there: only ever a site of ours, and never the data that is to be published."""
+    if not folder.is_dir() or not any(folder.iterdir()):
+        return
+    if not (folder / "scene.json").is_file() or not (folder / "index.html").is_file():
+        raise FovealError(
+            f"{folder}: the folder was not made by 'foveal publish', so it is not replaced. Name another one."
+        )
+    inside = folder.resolve()
+    for layer in scene.layers:
+        if layer.path.resolve().is_relative_to(inside):
+            raise FovealError(
+                f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
+            )
