@@ -1,13 +1,12 @@
 """Meshes made of formulas: for examples, tests and benchmarks, of any size."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .io.blocks import FaceBlock, MeshSource, VertexBlock
+from .io.blocks import Blocks, FaceBlock, MeshSource, VertexBlock
 from .trimesh import TriMesh
 
 __all__ = [
@@ -185,7 +184,7 @@ class _BumpyTorus(MeshSource):
             colours = colours.reshape(-1, 3)
         return VertexBlock(points.reshape(-1, 3), None, colours)
 
-    def blocks(self) -> Iterator[VertexBlock | FaceBlock]:
+    def blocks(self) -> Blocks:
         self.bytes_read = 0
         step = max(1, 65536 // self.sides)
         done = 0  # rings whose triangles towards the next are out

@@ -1,13 +1,13 @@
 """What all readers give: a mesh as a stream of blocks, bounded whatever the size of the file."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Generator
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Block", "FaceBlock", "MeshSource", "VertexBlock"]
+__all__ = ["Block", "Blocks", "FaceBlock", "MeshSource", "VertexBlock"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +43,8 @@ class FaceBlock:
 
 
 Block = VertexBlock | FaceBlock
+Blocks = Generator[Block, None, None]
+"""What `MeshSource.blocks` gives: an iterator of blocks with a `close`."""
 
 
 @dataclass
@@ -74,7 +76,7 @@ class MeshSource(ABC):
     notes: list[str] = field(default_factory=list)
 
     @abstractmethod
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Blocks:
         """Read the file from its start, in blocks of at most about a quarter of a million rows.
 
         Closing the iterator early closes the file.
