@@ -20,7 +20,7 @@ _SUFFIXES = (".ply", ".glb")
 
 def export(
     source: str | os.PathLike[str],
-    output: str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
     /,
     *,
     error: float | None = None,
@@ -28,14 +28,14 @@ def export(
     progress: Progress = SILENT,
     **options: Any,
 ) -> TriMesh:
-    """Write a PLY or GLB that is as coarse as an error or a number of triangles allows.
+    """A mesh that is as coarse as an error or a number of triangles allows, and a PLY or GLB of it.
 
     Parameters
     ----------
     source
         A `.fov`, or a mesh file, which is built first if it has to become coarser.
     output
-        Where to write; the suffix says the format.
+        Where to write, if anywhere; the suffix says the format.
     error : float, optional
         Largest distance to the original, in the unit of the file. By default, as of the original.
     triangles : int, optional
@@ -46,7 +46,7 @@ def export(
     Returns
     -------
     TriMesh
-        What was written.
+        With vertices of its own, those of the source or fewer.
 
     Raises
     ------
@@ -57,8 +57,8 @@ def export(
     from foveal.lod.select import cut_by_error
     from foveal.mesh.io import read_mesh
 
-    source, output = Path(source), Path(output)
-    if output.suffix.lower() not in _SUFFIXES:
+    source, output = Path(source), None if output is None else Path(output)
+    if output is not None and output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
     if error is not None and triangles is not None:
         raise ValueError("give error or triangles, not both")
@@ -73,12 +73,13 @@ def export(
             if triangles is not None:
                 error = error_for_triangles(asset.graph, triangles, name=str(source))
             mesh = asset.mesh_of(cut_by_error(asset.graph, error=error).expanded)
-    write_mesh(mesh, output)
+    if output is not None:
+        _write(mesh, output)
     return mesh
 
 
-def write_mesh(mesh: TriMesh, output: Path) -> None:
-    """Write in the format that the suffix says."""
+def _write(mesh: TriMesh, output: Path) -> None:
+    """In the format that the suffix says."""
     from foveal.mesh.io import write_glb, write_ply
 
     (write_ply if output.suffix.lower() == ".ply" else write_glb)(mesh, output)

@@ -9,22 +9,28 @@ import os
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import platformdirs
 
 import foveal
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
-from foveal.base.tasks import Executor
+from foveal.mesh.trimesh import TriMesh
 
-__all__ = ["CACHE_BYTES", "BuildOptions", "build_file", "cache_folder", "prepare"]
+from .scene import Scene, read_scene, scene_of
+
+if TYPE_CHECKING:
+    from foveal.multires import BuildReport
+
+__all__ = ["CACHE_BYTES", "BuildOptions", "build_file", "cache_folder", "load", "prepare", "prepare_mesh"]
 
 CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20
+_DIGITS = 20
 _OLD_LITTER_S = 86_400
 # Formats that point to further files, whose change must build anew.
 _WITH_COMPANIONS = {".obj", ".gltf", ".dae"}
@@ -63,34 +69,44 @@ def cache_folder() -> Path:
 
 
 def build_file(
-    source: str | os.PathLike[str],
+    source: str | os.PathLike[str] | TriMesh,
     output: str | os.PathLike[str],
     /,
     *,
     options: BuildOptions = BuildOptions(),
-    memory_bytes: int | None = None,
-    executor: Executor | None = None,
-    workers: int | None = None,
     progress: Progress = SILENT,
-) -> Any:
-    """Build a mesh file into a `.fov` and return the `BuildReport`; errors as `multires.build`."""
-    from foveal import multires
-    from foveal.mesh.io import open_source
+    **work: Any,
+) -> "BuildReport":
+    """Build a mesh file, or a mesh, into a `.fov`.
 
-    path = Path(source)
+    Parameters
+    ----------
+    source, output
+        What to read and where to write.
+    options : BuildOptions
+        What changes the bytes.
+    progress, **work
+        `memory_bytes`, `executor` and `workers` of `multires.build`, which also says what is raised.
+    """
+    from foveal import multires
+    from foveal.base.jit import is_cold
+    from foveal.mesh.io import open_source, source_from_mesh
+
+    if isinstance(source, TriMesh):
+        mesh = source_from_mesh(source, up=options.up or "y")
+    else:
+        _refuse_missing(Path(source))
+        mesh = open_source(source, up=options.up)
+    if is_cold():
+        progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
+    return multires.build(mesh, Path(output), progress=progress, **options.arguments(), **work)
+
+
+def _refuse_missing(path: Path) -> None:
     if path.is_dir():
-        raise FovealError(f"{path}: this is a folder; name a mesh file.")
+        raise FovealError(f"{path}: this is a folder; name a mesh file, a .fov or a scene.json.")
     if not path.exists():
         raise FovealError(f"{path}: there is no such file.")
-    return multires.build(
-        open_source(path, up=options.up),
-        Path(output),
-        memory_bytes=memory_bytes,
-        executor=executor,
-        workers=workers,
-        progress=progress,
-        **options.arguments(),
-    )
 
 
 def prepare(
@@ -100,10 +116,7 @@ def prepare(
     options: BuildOptions = BuildOptions(),
     folder: str | os.PathLike[str] | None = None,
     limit_bytes: int = CACHE_BYTES,
-    memory_bytes: int | None = None,
-    executor: Executor | None = None,
-    workers: int | None = None,
-    progress: Progress = SILENT,
+    **work: Any,
 ) -> Path:
     """The path of a `.fov` that shows `source`, built if the cache does not have it.
 
@@ -117,8 +130,8 @@ def prepare(
         The cache; by default the user's.
     limit_bytes : int
         The cache is brought below this after a build; the new file itself always stays.
-    memory_bytes, executor, workers, progress
-        As in `multires.build`.
+    **work
+        `progress`, `memory_bytes`, `executor` and `workers`, as in `multires.build`.
 
     Raises
     ------
@@ -126,30 +139,54 @@ def prepare(
         If the file is missing or cannot be read as what it seems to be.
     """
     path = Path(source)
-    if path.is_dir():
-        raise FovealError(f"{path}: this is a folder; name a mesh file, a .fov or a scene.json.")
-    if not path.exists():
-        raise FovealError(f"{path}: there is no such file.")
+    _refuse_missing(path)
     if path.suffix.lower() == ".fov":
         return path
     root = Path(folder) if folder is not None else cache_folder()
     built = root / f"{_stem(path)}-{_fingerprint(path, options)}.fov"
+    return _built_once(path, built, limit_bytes, options=options, **work)
+
+
+def prepare_mesh(
+    mesh: TriMesh,
+    /,
+    *,
+    options: BuildOptions = BuildOptions(),
+    folder: str | os.PathLike[str] | None = None,
+    limit_bytes: int = CACHE_BYTES,
+    **work: Any,
+) -> Path:
+    """The same for a mesh in memory."""
+    state = hashlib.blake2b(f"{foveal.__version__} {asdict(options)}".encode())
+    for array in (mesh.positions, mesh.faces, mesh.normals, mesh.colours):
+        state.update(b"none" if array is None else array.tobytes())
+    root = Path(folder) if folder is not None else cache_folder()
+    built = root / f"mesh-{state.hexdigest()[:_DIGITS]}.fov"
+    return _built_once(mesh, built, limit_bytes, options=options, **work)
+
+
+def _built_once(source: Path | TriMesh, built: Path, limit_bytes: int, **work: Any) -> Path:
+    """`built`, after building it if it is not there."""
     if built.exists():
         # Only the time of use changes: that of writing is in the ETag, and browsers keep what they have.
         os.utime(built, ns=(time.time_ns(), built.stat().st_mtime_ns))
         return built
-    _sweep_litter(root)
-    build_file(
-        path,
-        built,
-        options=options,
-        memory_bytes=memory_bytes,
-        executor=executor,
-        workers=workers,
-        progress=progress,
-    )
-    _forget_oldest(root, limit_bytes, keep=built)
+    _sweep_litter(built.parent)
+    build_file(source, built, **work)
+    _forget_oldest(built.parent, limit_bytes, keep=built)
     return built
+
+
+def load(source: str | os.PathLike[str], /, **options: Any) -> Scene:
+    """A scene of any file: a scene.json, a `.fov`, or a mesh file, which is built into the cache.
+
+    Options and errors are those of `prepare` and `read_scene`.
+    """
+    path = Path(source)
+    if path.suffix.lower() == ".json":
+        return read_scene(path)
+    built = prepare(path, **options)
+    return scene_of(built, title=path.name.removesuffix(".gz").rpartition(".")[0] or path.name)
 
 
 def _stem(path: Path) -> str:
@@ -158,7 +195,7 @@ def _stem(path: Path) -> str:
 
 
 def _fingerprint(path: Path, options: BuildOptions) -> str:
-    """A name for the content and the options: 20 hexadecimal digits."""
+    """A name for the content and the options."""
     status = path.stat()
     state = hashlib.blake2b(f"{foveal.__version__} {asdict(options)} {path.suffixes[-2:]}".encode())
     state.update(f"{status.st_size}".encode())
@@ -188,7 +225,7 @@ def _fingerprint(path: Path, options: BuildOptions) -> str:
             }:
                 status = other.stat()
                 state.update(f"{other.name} {status.st_size} {status.st_mtime_ns}".encode())
-    return state.hexdigest()[:20]
+    return state.hexdigest()[:_DIGITS]
 
 
 def _sweep_litter(root: Path) -> None:

@@ -11,7 +11,7 @@ from foveal.base.progress import SILENT, Progress
 from .scene import Scene, asset_names, scene_json
 from .viewer_files import viewer_files
 
-__all__ = ["publish"]
+__all__ = ["publish", "refuse_folder"]
 
 _README = """\
 {title}
@@ -66,8 +66,13 @@ def publish(
         If the viewer is not built, or the folder must not be replaced.
     """
     folder = Path(folder)
-    if force:
-        _refuse_to_replace(folder, scene)
+    refuse_folder(folder, force=force)
+    inside = folder.resolve()
+    for layer in scene.layers:
+        if layer.path.resolve().is_relative_to(inside):
+            raise FovealError(
+                f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
+            )
     files = viewer_files(viewer)
     names = asset_names(scene)
     total = sum(path.stat().st_size for path in names)
@@ -88,17 +93,22 @@ def publish(
     return folder
 
 
-def _refuse_to_replace(folder: Path, scene: Scene) -> None:
-    """Force deletes what was there: only ever a site of ours, and never the data that is to be published."""
-    if not folder.is_dir() or not any(folder.iterdir()):
+def refuse_folder(folder: str | os.PathLike[str], /, *, force: bool = False) -> None:
+    """Say before any work that a folder will not do. Force replaces a site of ours, never anything else.
+
+    Raises
+    ------
+    FovealError
+        If it is a file, or holds something and is not to be replaced.
+    """
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise FovealError(f"{folder}: this is a file; name a folder to write.")
+    if not folder.exists() or not any(folder.iterdir()):
         return
+    if not force:
+        raise FovealError(f"{folder}: the folder is not empty. Use --force to replace it.")
     if not (folder / "scene.json").is_file() or not (folder / "index.html").is_file():
         raise FovealError(
             f"{folder}: the folder was not made by 'foveal publish', so it is not replaced. Name another one."
         )
-    inside = folder.resolve()
-    for layer in scene.layers:
-        if layer.path.resolve().is_relative_to(inside):
-            raise FovealError(
-                f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
-            )

@@ -12,7 +12,7 @@ from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from .scene import Scene
+from .scene import Layer, Scene
 
 __all__ = ["frame", "read_camera", "render"]
 
@@ -105,7 +105,7 @@ def render(
     return raster.picture(_joined(meshes), camera)
 
 
-def _visible(scene: Scene) -> list[object]:
+def _visible(scene: Scene) -> list[Layer]:
     return [layer for layer in scene.layers if layer.is_visible] or list(scene.layers[:1])
 
 

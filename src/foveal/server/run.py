@@ -72,6 +72,16 @@ class Running:
         self._server.should_exit = True
         self._thread.join(timeout=5)
 
+    def wait(self) -> None:
+        """Wait until the server ends or Ctrl-C, then close it."""
+        try:
+            while self._thread.is_alive():
+                self._thread.join(timeout=0.5)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            self.close()
+
     def __enter__(self) -> "Running":
         return self
 

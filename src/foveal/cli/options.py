@@ -1,0 +1,158 @@
+"""Options that several commands have, each defined once."""
+
+import enum
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = [
+    "Bits",
+    "Dask",
+    "Debug",
+    "ErrorPx",
+    "Force",
+    "Json",
+    "Memory",
+    "Normals",
+    "Quiet",
+    "Size",
+    "Source",
+    "Step",
+    "Up",
+    "UpAxis",
+    "Verbose",
+    "Workers",
+    "parse_picture_size",
+    "parse_size",
+]
+
+_UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "t": 10**12}
+_BINARY = {"": 1, "k": 2**10, "m": 2**20, "g": 2**30, "t": 2**40}
+
+
+def parse_size(text: str) -> int:
+    """Bytes from a number with a unit: 2GB, 500 MB, 1.5GiB, 4096.
+
+    Examples
+    --------
+    >>> parse_size("2GB"), parse_size("1.5 GiB"), parse_size("4096")
+    (2000000000, 1610612736, 4096)
+    """
+    match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([kmgt]?)(i?)b?\s*", text.lower())
+    if match is None:
+        raise typer.BadParameter(f"{text!r} is not a size; write for instance 2GB or 500MB.")
+    size = int(float(match[1]) * (_BINARY if match[3] else _UNITS)[match[2]])
+    if size < 1:
+        raise typer.BadParameter("the size must be at least one byte.")
+    return size
+
+
+def parse_picture_size(text: str) -> tuple[int, int]:
+    """Width and height from 1280x720.
+
+    Examples
+    --------
+    >>> parse_picture_size("1280x720")
+    (1280, 720)
+    """
+    match = re.fullmatch(r"\s*([0-9]{1,5})\s*[x×]\s*([0-9]{1,5})\s*", text.lower())
+    if match is None or not 1 <= int(match[1]) <= 16384 or not 1 <= int(match[2]) <= 16384:
+        raise typer.BadParameter(
+            f"{text!r} is not a size in pixels up to 16384; write for instance 1280x720."
+        )
+    return int(match[1]), int(match[2])
+
+
+class UpAxis(enum.StrEnum):
+    """Which axis of the input points up."""
+
+    x = "x"
+    y = "y"
+    z = "z"
+
+
+_BUILD = "How it is built"
+_WORK = "How it works"
+
+Source = Annotated[
+    Path,
+    typer.Argument(
+        metavar="FILE", help="A mesh (PLY, STL, OBJ, OFF, GLB ..., also .gz), a .fov, or a scene.json."
+    ),
+]
+Bits = Annotated[
+    int | None,
+    typer.Option(
+        min=4,
+        max=21,
+        metavar="N",
+        rich_help_panel=_BUILD,
+        help="Grid of 2^N steps over the largest extent. More is closer to the input, and larger.",
+    ),
+]
+Step = Annotated[
+    float | None,
+    typer.Option(
+        metavar="LENGTH",
+        rich_help_panel=_BUILD,
+        help="Grid step in the file's unit, instead of --bits. Smaller is closer, and larger in bytes.",
+    ),
+]
+Normals = Annotated[
+    str | None,
+    typer.Option(
+        metavar="WHICH",
+        rich_help_panel=_BUILD,
+        help="Which normals are stored: none is smallest, keep is truest to the file.",
+    ),
+]
+Up = Annotated[
+    UpAxis | None,
+    typer.Option(
+        rich_help_panel=_BUILD,
+        help="Axis that points up; by default the format's (y; LAS z). Data is never rotated.",
+    ),
+]
+Memory = Annotated[
+    int | None,
+    typer.Option(
+        metavar="SIZE",
+        parser=parse_size,
+        rich_help_panel=_WORK,
+        help="Memory to keep within, e.g. 2GB. Less is slower: the rest waits on disk.",
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        metavar="N",
+        rich_help_panel=_WORK,
+        help="Threads; by default one a processor. Fewer leave room for others.",
+    ),
+]
+Dask = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS",
+        rich_help_panel=_WORK,
+        help="Build on a Dask cluster, e.g. tcp://host:8786. Pays for very large inputs only.",
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace what is there already.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout, for programs.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no notes; errors only.")]
+Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say how long each stage took.")]
+Debug = Annotated[bool, typer.Option("--debug", help="On an error, show where in the code it arose.")]
+Size = Annotated[
+    str | None,
+    typer.Option(metavar="WxH", help="Picture size in pixels, e.g. 1280x720, which is the default."),
+]
+ErrorPx = Annotated[
+    float,
+    typer.Option(
+        min=0.0, metavar="PX", help="How wrong the surface may look, in pixels. Larger is faster and coarser."
+    ),
+]

@@ -1,0 +1,73 @@
+"""From the options of a command to the keyword arguments of `prepare` and `build`."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from foveal.base.errors import FovealError
+from foveal.base.progress import Progress
+from foveal.base.tasks import Executor
+
+from .options import UpAxis
+
+__all__ = ["build_arguments", "dask_executor", "refuse_existing", "refuse_missing"]
+
+
+@contextmanager
+def dask_executor(address: str | None) -> Iterator[Executor | None]:
+    """An executor on a Dask cluster, or None for local threads."""
+    if address is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise FovealError(
+            "--dask: Dask is not installed. Install it with: pip install 'foveal[dask]'."
+        ) from error
+    try:
+        client = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
+    except (OSError, ValueError, TimeoutError) as error:
+        raise FovealError(
+            f"--dask {address}: no cluster answers there. Start one, or check the address."
+        ) from error
+    with client:
+        yield client.get_executor()  # type: ignore[no-untyped-call]
+
+
+def build_arguments(
+    *,
+    bits: int | None,
+    step: float | None,
+    normals: str | None,
+    up: UpAxis | None,
+    memory: int | None,
+    workers: int | None,
+    executor: Executor | None,
+    progress: Progress,
+) -> dict[str, Any]:
+    """The keyword arguments that `scene.prepare` and `scene.build_file` take."""
+    from foveal.scene.prepare import BuildOptions
+
+    if bits is not None and step is not None:
+        raise FovealError("--bits and --step say the same thing in two ways. Give one of them.")
+    return {
+        "options": BuildOptions(bits=bits, step=step, normals=normals, up=None if up is None else up.value),
+        "memory_bytes": memory,
+        "workers": workers,
+        "executor": executor,
+        "progress": progress,
+    }
+
+
+def refuse_missing(path: Path) -> None:
+    """Stop before any work if the input is not there."""
+    if not path.exists():
+        raise FovealError(f"{path}: there is no such file.")
+
+
+def refuse_existing(path: Path, *, force: bool) -> None:
+    """Stop before any work if the output is there and may not be replaced."""
+    if path.exists() and not force:
+        raise FovealError(f"{path}: is there already. Use --force to replace it.")

@@ -1,0 +1,73 @@
+"""Whether a `.fov`, or every file of a scene, is whole and true."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+from foveal.base.errors import FovealError
+from foveal.base.progress import SILENT, Progress
+
+from .scene import read_scene
+
+__all__ = ["check"]
+
+
+def check(
+    source: str | os.PathLike[str],
+    /,
+    *,
+    deep: bool = False,
+    original: str | os.PathLike[str] | None = None,
+    progress: Progress = SILENT,
+) -> dict[str, Any]:
+    """Verify checksums, structure and every patch; with `deep`, measure the error bounds again.
+
+    Parameters
+    ----------
+    source
+        A `.fov` or a scene.json.
+    deep : bool
+        Decode all and measure each stored error.
+    original
+        The mesh to measure against; by default the finest level. For a `.fov` only.
+    progress : Progress
+        Told of each stage.
+
+    Returns
+    -------
+    dict
+        JSON can hold it: `file`, `is_whole`, and what `multires.check` tells, or `layers` with one such
+        for each asset.
+
+    Raises
+    ------
+    FovealError
+        If anything is wrong, in a sentence that says what.
+    """
+    from foveal import multires
+
+    path = Path(source)
+    if path.suffix.lower() not in (".fov", ".json"):
+        raise FovealError(
+            f"{path}: only a .fov or a scene.json can be checked. Look at a mesh with 'foveal info'."
+        )
+    if path.suffix.lower() == ".fov":
+        return {
+            "file": str(path),
+            "is_whole": True,
+            **_plain(multires.check(path, deep=deep, original=original)),
+        }
+    if original is not None:
+        raise FovealError(
+            f"{path}: an original can be given for a single .fov only. Check the files one by one."
+        )
+    layers = [check(layer.path, deep=deep, progress=progress) for layer in read_scene(path).layers]
+    return {"file": str(path), "is_whole": True, "layers": layers}
+
+
+def _plain(report: object) -> dict[str, Any]:
+    import dataclasses
+
+    if dataclasses.is_dataclass(report) and not isinstance(report, type):
+        return dataclasses.asdict(report)
+    return {}

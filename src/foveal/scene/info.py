@@ -1,0 +1,177 @@
+"""What is in a file, for people and programs: a `.fov`, a mesh file, or a scene.json.
+
+A `.fov` is looked into by its header, index and chunk 0 alone, and without the rooms that compile
+kernels: importing those would double the time of `foveal info`.
+"""
+
+import dataclasses
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.base.errors import FovealError
+from foveal.container import Container, open_container
+
+from .scene import read_scene
+
+__all__ = ["info"]
+
+
+def info(source: str | os.PathLike[str], /, *, up: str | None = None) -> dict[str, Any]:
+    """Look into a file.
+
+    Parameters
+    ----------
+    source
+        A `.fov`, a mesh file, or a scene.json.
+    up : str, optional
+        For mesh files, the axis that points up.
+
+    Returns
+    -------
+    dict
+        JSON can hold it. `kind` is "multires", "mesh" or "scene". For a `.fov`, `level_table` has a
+        row for each level, coarse to fine: the triangles that are shown when all up to it is expanded,
+        their largest distance to the original (`error`, an upper bound), and the level's own bytes.
+
+    Raises
+    ------
+    FovealError
+        If the file is missing or is not what it seems to be.
+    """
+    path = Path(source)
+    if path.is_dir():
+        raise FovealError(f"{path}: this is a folder; name a file.")
+    if not path.exists():
+        raise FovealError(f"{path}: there is no such file.")
+    suffix = path.suffix.lower()
+    if suffix == ".json":
+        return _scene_info(path)
+    return _fov_info(path) if suffix == ".fov" else _mesh_info(path, up)
+
+
+def _scene_info(path: Path) -> dict[str, Any]:
+    scene = read_scene(path)
+    return {
+        "file": str(path),
+        "kind": "scene",
+        "title": scene.title,
+        "layers": [
+            {"name": layer.name, "visible": layer.is_visible, **_fov_info(layer.path)}
+            for layer in scene.layers
+        ],
+        "views": [view.name for view in scene.views],
+    }
+
+
+def _mesh_info(path: Path, up: str | None) -> dict[str, Any]:
+    from foveal.mesh.io import read_mesh
+    from foveal.mesh.topology import inspect
+
+    mesh = read_mesh(path, up=up)
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    return {
+        "file": str(path),
+        "kind": "mesh",
+        "bytes": path.stat().st_size,
+        "triangles": len(mesh.faces),
+        "vertices": len(mesh.positions),
+        "box": [low.tolist(), high.tolist()],
+        "attributes": [
+            name for name, array in (("normal", mesh.normals), ("colour", mesh.colours)) if array is not None
+        ],
+        "topology": dataclasses.asdict(inspect(mesh)),
+    }
+
+
+def _fov_info(path: Path) -> dict[str, Any]:
+    with open_container(path) as file:
+        file.expect("multires", 1)
+        header, size = file.header, path.stat().st_size
+        table = _level_table(file)
+        data_bytes = int(file.lengths[1:].sum())
+    origin, step = np.array(header["origin"]), header["step"]
+    box = [(origin + step * np.array(corner)).tolist() for corner in header["box"]]
+    return {
+        "file": str(path),
+        "kind": "multires",
+        "version": header["version"],
+        "bytes": size,
+        "triangles": header["triangles"],
+        "vertices": header["vertices"],
+        "bits_per_vertex": round(8 * size / max(1, header["vertices"]), 3),
+        "box": box,
+        "step": step,
+        "up": header.get("up", "y"),
+        "unit": header.get("unit"),
+        "epsg": header.get("epsg"),
+        "attributes": [stream["name"] for stream in header["streams"]],
+        "codec": header["codec"],
+        "generator": header.get("generator"),
+        "nodes": header["nodes"],
+        "patches": header["patches"],
+        "levels": len(table),
+        "overhead_bytes": size - data_bytes,
+        "overhead_share": round((size - data_bytes) / size, 5),
+        "first_bytes": header["first_bytes"],
+        "level_table": table,
+    }
+
+
+def _level_table(file: Container) -> list[dict[str, Any]]:
+    """The rows of `info`, from chunk 0 as spec/container.md lays it out."""
+    nodes, patches = file.header["nodes"], file.header["patches"]
+    chunk = file.chunk(0)
+    at = 0
+
+    def column(kind: str, count: int) -> NDArray[Any]:
+        nonlocal at
+        values = np.frombuffer(chunk, kind, count, at)
+        at += values.nbytes
+        return values
+
+    try:
+        first = column("<u4", nodes + 1).astype(np.int64)
+        column("<f4", 4 * nodes)
+        errors = column("<f4", nodes)
+        finer = column("<i4", patches)
+        triangles = column("<u4", patches).astype(np.int64)
+        owner = np.repeat(np.arange(nodes), np.diff(first))
+        levels = _levels(owner, finer, nodes)
+    except (ValueError, IndexError, TypeError) as error:
+        raise FovealError(
+            f"{file.name}: its graph does not agree with its header. Copy or build it again."
+        ) from error
+    of_patch, of_finer = levels[owner], np.where(finer < 0, np.iinfo(np.int64).max, levels[finer])
+    rows = []
+    for level in range(int(levels.max()) + 1):
+        is_shown = (of_patch <= level) & (of_finer > level)
+        rows.append(
+            {
+                "level": level,
+                "nodes": int((levels == level).sum()),
+                "patches": int((of_patch == level).sum()),
+                "triangles": int(triangles[is_shown].sum()),
+                "error": float(errors[levels > level].max(initial=0.0)),
+                "bytes": int(file.lengths[1:][levels == level].sum()),
+            }
+        )
+    return rows
+
+
+def _levels(owner: NDArray[np.int64], finer: NDArray[np.int32], nodes: int) -> NDArray[np.int64]:
+    """(n,): the longest way from node 0, which is 0."""
+    if len(owner) != len(finer) or (finer >= nodes).any():
+        raise ValueError("columns do not fit")
+    levels = np.zeros(nodes, dtype=np.int64)
+    parents, children = owner[finer >= 0], finer[finer >= 0]
+    if (parents >= children).any():
+        raise ValueError("a parent comes after its child")
+    while True:
+        before = levels.copy()
+        np.maximum.at(levels, children, levels[parents] + 1)
+        if (levels == before).all():
+            return levels
