@@ -90,7 +90,8 @@ def parse_number(buffer, at, end):
             at += 1
         first = at
         while at < end and 48 <= buffer[at] <= 57:
-            power = power * 10 + (np.int64(buffer[at]) - 48) if power < 100000 else power
+            if power < 100000:
+                power = power * 10 + (np.int64(buffer[at]) - 48)  # type: ignore[assignment]
             at += 1
         is_exact = is_exact and at > first
         power = -power if is_small else power

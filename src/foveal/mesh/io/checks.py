@@ -7,7 +7,7 @@ from foveal.base.errors import FovealError
 
 from .blocks import Blocks, VertexBlock
 
-__all__ = ["bytes_of_colours", "check_blocks", "unit_normals"]
+__all__ = ["bytes_of_colours", "check_blocks"]
 
 _MOST = 2**31 - 1  # faces are int32 in a TriMesh
 
@@ -59,22 +59,6 @@ def _refuse_index(index: int, triangle: int, vertices: int | None, name: str) ->
         f"{name}: triangle {triangle} names vertex {index}, but {known}. The file is damaged;"
         " export or copy it again."
     )
-
-
-def unit_normals(normals: NDArray[np.floating]) -> NDArray[np.float32]:
-    """(k, 3) float32 of unit length; what has no direction, or is not finite, becomes zero.
-
-    Examples
-    --------
-    >>> unit_normals(np.array([[0, 0, 2.0], [0, 0, 0], [np.nan, 0, 1]]))
-    array([[0., 0., 1.],
-           [0., 0., 0.],
-           [0., 0., 0.]], dtype=float32)
-    """
-    wide = np.where(np.isfinite(normals).all(axis=1, keepdims=True), normals, 0).astype(np.float64)
-    wide /= np.maximum(np.abs(wide).max(axis=1, keepdims=True, initial=0), 1e-300)  # no overflow below
-    length = np.linalg.norm(wide, axis=1, keepdims=True)
-    return (wide / np.where(length > 0, length, 1)).astype(np.float32)
 
 
 def bytes_of_colours(values: NDArray[np.floating], scale: float) -> NDArray[np.uint8]:

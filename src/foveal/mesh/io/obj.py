@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 
+from ..normals import unit_normals
 from . import _kernels_obj as kernels
 from .blocks import Blocks, FaceBlock, MeshSource, VertexBlock
-from .checks import bytes_of_colours, check_blocks, unit_normals
+from .checks import bytes_of_colours, check_blocks
 from .obj_materials import TexturedColours
 from .obj_parser import ObjParser
 from .stream import ByteStream

@@ -72,7 +72,7 @@ class ObjParser:
         at = 0
         while at < len(buffer):
             at = kernels.parse_lines(
-                buffer, at, self._wanted, self.counts, *rows, triangles, uvs, slow, result
+                buffer, at, self._wanted, self.counts, rows[0], rows[1], rows[2], triangles, uvs, slow, result
             )
             fault = int(result[kernels.FAULT])
             if fault in _FAULTS:

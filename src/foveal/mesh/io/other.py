@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 
+from ..colours import linear_of_srgb, srgb_of_linear
+from ..normals import unit_normals
 from ..trimesh import TriMesh
-from .checks import bytes_of_colours, unit_normals
-from .gltf_guard import check_gltf
+from .checks import bytes_of_colours
+from .gltf import prepare_gltf
 from .stream import ByteStream
 from .textures import picture_array, sample_picture
 
@@ -29,8 +31,6 @@ def read_other(path: Path, kind: str, /) -> tuple[TriMesh, list[str]]:
     FovealError
         If trimesh cannot read it, it has no triangles, or an extra is needed that is missing.
     """
-    if kind in ("glb", "gltf"):
-        check_gltf(path, kind)
     parts, notes = [], []
     for geometry, transform in _load(path, kind):
         part, note = _part(geometry, transform)
@@ -46,12 +46,11 @@ def _load(path: Path, kind: str) -> list[tuple[Any, NDArray[np.float64]]]:
     import trimesh  # takes a third of a second, and PLY, STL and OBJ do without
 
     try:
-        with warnings.catch_warnings(), ByteStream(path) as stream:
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            data = prepare_gltf(path, kind) if kind in ("glb", "gltf") else _all_bytes(path)
             resolver = trimesh.resolvers.FilePathResolver(str(path))
-            loaded = trimesh.load(
-                io.BytesIO(stream.read(-1)), file_type=kind, resolver=resolver, process=False
-            )
+            loaded = trimesh.load(io.BytesIO(data), file_type=kind, resolver=resolver, process=False)
             scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
             found = []
             for node in scene.graph.nodes_geometry:
@@ -69,6 +68,11 @@ def _load(path: Path, kind: str) -> list[tuple[Any, NDArray[np.float64]]]:
             f"{path.name}: it cannot be read as {kind.upper()} ({_short(error)}). The file is damaged or"
             " mislabelled; export it again, for example as PLY."
         ) from error
+
+
+def _all_bytes(path: Path) -> bytes:
+    with ByteStream(path) as stream:
+        return stream.read(-1)
 
 
 def _short(error: Exception) -> str:
@@ -102,28 +106,35 @@ def _colours(geometry: Any, count: int) -> tuple[NDArray[np.uint8] | None, str]:
     if visual.kind == "vertex":
         return np.ascontiguousarray(np.asarray(visual.vertex_colors)[:, :3], dtype=np.uint8), ""
     if visual.kind == "face":
-        note = "its colours belong to triangles, not vertices, and were left out"
-        return None, note
-    if visual.kind != "texture":
-        return None, ""
-    picture, factor = _material(visual.material)
-    uvs = getattr(visual, "uv", None)
-    attributes = getattr(geometry, "vertex_attributes", {})
-    given = attributes.get("color") if hasattr(attributes, "get") else None
-    base = np.broadcast_to(factor, (count, 3))
-    if picture is not None and uvs is not None and np.shape(uvs) == (count, 2):
-        colours = bytes_of_colours(sample_picture(picture, np.asarray(uvs)) * base, 1.0)
-        return colours, "its texture was sampled into vertex colours"
-    if given is not None and np.shape(given)[:1] == (count,) and np.ndim(given) == 2:
-        scale = 255.0 if np.asarray(given).dtype.kind == "f" else 1.0
-        return bytes_of_colours(np.asarray(given, dtype=np.float64)[:, :3], scale), ""
-    if not np.allclose(factor, 1):
-        return bytes_of_colours(base, 255.0), ""
-    return None, ""
+        return None, "its colours belong to triangles, not vertices, and were left out"
+    light, note = np.ones((count, 3)), ""
+    is_coloured = False
+    if visual.kind == "texture":
+        picture, factor = _material(visual.material)
+        uvs = getattr(visual, "uv", None)
+        if picture is not None and uvs is not None and np.shape(uvs) == (count, 2):
+            samples = bytes_of_colours(sample_picture(picture, np.asarray(uvs)), 1.0)
+            light, is_coloured = linear_of_srgb(samples), True
+            note = "its texture was sampled into vertex colours"
+        is_coloured |= bool((factor < 0.999).any())
+        light = light * factor
+    given = _gltf_colours(geometry, count)
+    if given is not None:
+        light, is_coloured = light * given, True
+    return (srgb_of_linear(light) if is_coloured else None), note
+
+
+def _gltf_colours(geometry: Any, count: int) -> NDArray[np.float64] | None:
+    """COLOR_0 as linear light; see `prepare_gltf` for its name."""
+    values = np.asarray(geometry.vertex_attributes.get("_COLOR_0", ()))
+    if values.ndim != 2 or values.shape[0] != count or values.shape[1] not in (3, 4):
+        return None
+    scale = float(np.iinfo(values.dtype).max) if values.dtype.kind in "iu" else 1.0
+    return values[:, :3].astype(np.float64) / scale
 
 
 def _material(material: Any) -> tuple[NDArray[np.uint8] | None, NDArray[np.float64]]:
-    """A material's picture and the factor, 0 to 1 in sRGB, that tints it."""
+    """A material's picture and the factor, 0 to 1 in linear light, that tints it."""
     image = getattr(material, "baseColorTexture", None)
     image = getattr(material, "image", None) if image is None else image
     factor = np.ones(3)

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 
+from ..normals import unit_normals
 from . import _kernels_ply as kernels
 from .blocks import Blocks, FaceBlock, MeshSource, VertexBlock
-from .checks import bytes_of_colours, check_blocks, unit_normals
+from .checks import bytes_of_colours, check_blocks
 from .numbers import NumberReader
 from .ply_header import Element, PlyHeader, read_header
 from .stream import ByteStream

@@ -1,4 +1,4 @@
-"""What a glTF file claims, checked before a library allocates by it."""
+"""glTF on its way to trimesh: what it claims is checked before anything allocates by it."""
 
 import importlib.util
 import json
@@ -9,7 +9,7 @@ from foveal.base.errors import FovealError
 
 from .stream import ByteStream
 
-__all__ = ["check_gltf"]
+__all__ = ["prepare_gltf"]
 
 _MOST_ELEMENTS = 1 << 31
 _DRACO = "KHR_draco_mesh_compression"
@@ -22,8 +22,11 @@ _COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
 
-def check_gltf(path: Path, kind: str) -> None:
-    """Refuse what cannot be read, or would take memory out of proportion to the file.
+def prepare_gltf(path: Path, kind: str) -> bytes:
+    """The file's bytes, fit for trimesh; refused is what would take memory out of proportion to the file.
+
+    Vertex colours come under the name `_COLOR_0`: trimesh makes bytes of COLOR_0 by cutting off what is
+    above 255, where glTF has 16-bit ones, too; attributes of other names it leaves as they are.
 
     Raises
     ------
@@ -41,6 +44,7 @@ def check_gltf(path: Path, kind: str) -> None:
         views = [int(v["byteLength"]) for v in tree.get("bufferViews", [])]
         required = set(tree.get("extensionsRequired", []))
         used = set(tree.get("extensionsUsed", [])) | required
+        _rename_colours(tree)
     except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
         raise FovealError(
             f"{path.name}: its glTF description is damaged ({type(error).__name__}). Export it again."
@@ -61,6 +65,7 @@ def check_gltf(path: Path, kind: str) -> None:
     room = max(known, len(data)) * (512 if _DRACO in used else 1)
     if any(length > room for length in lengths) or any(v > max(known, len(data)) for v in views):
         raise FovealError(f"{path.name}: it claims more data than it has. Copy or export it again.")
+    return _glb(tree, data) if kind == "glb" else json.dumps(tree).encode()
 
 
 def _json_of(data: bytes) -> bytes:
@@ -76,3 +81,21 @@ def _accessor_bytes(accessor: dict[str, Any]) -> int:
     if not 0 <= count < _MOST_ELEMENTS:
         raise ValueError("count")
     return count * _COMPONENT_BYTES[accessor["componentType"]] * _WIDTHS[accessor["type"]]
+
+
+def _rename_colours(tree: dict[str, Any]) -> None:
+    for mesh in tree.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            draco = primitive.get("extensions", {}).get(_DRACO, {})
+            for attributes in (primitive["attributes"], draco.get("attributes", {})):
+                if "COLOR_0" in attributes:
+                    attributes["_COLOR_0"] = attributes.pop("COLOR_0")
+
+
+def _glb(tree: dict[str, Any], data: bytes) -> bytes:
+    """The GLB `data` with another description."""
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + int.from_bytes(data[12:16], "little") :]
+    total = 20 + len(text) + len(rest)
+    return data[:8] + total.to_bytes(4, "little") + len(text).to_bytes(4, "little") + b"JSON" + text + rest
