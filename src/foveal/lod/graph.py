@@ -124,7 +124,8 @@ class Graph:
     def node_bytes(self) -> NDArray[np.int64]:
         """(n,): the encoded size of each node's patches."""
         total = np.concatenate([[0], np.cumsum(self.patch_bytes, dtype=np.int64)])
-        return total[self.first_patch[1:]] - total[self.first_patch[:-1]]
+        sums: NDArray[np.int64] = total[self.first_patch[1:]] - total[self.first_patch[:-1]]
+        return sums
 
     @cached_property
     def hidden_triangles(self) -> NDArray[np.int64]:
@@ -139,5 +140,5 @@ def _for_kernels(
     dtype: type[Scalar], a: NDArray[Any], b: NDArray[Any], c: NDArray[Any]
 ) -> tuple[NDArray[Scalar], NDArray[Scalar], NDArray[Scalar]]:
     # One signature only: each further one would be compiled anew.
-    needs = ["C_CONTIGUOUS", "WRITEABLE"]
-    return np.require(a, dtype, needs), np.require(b, dtype, needs), np.require(c, dtype, needs)
+    a, b, c = (np.require(column, dtype, ["C_CONTIGUOUS", "WRITEABLE"]) for column in (a, b, c))
+    return a, b, c

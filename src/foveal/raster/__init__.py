@@ -1,1 +1,6 @@
-"""The CPU rasteriser: deterministic pictures without a GPU or a display."""
+"""The CPU rasteriser: depth, G-buffers, shading, PNG. Deterministic, no GPU, no display."""
+
+from .picture import gradient, picture, write_png
+from .rasterise import GBuffer, rasterise
+
+__all__ = ["GBuffer", "gradient", "picture", "rasterise", "write_png"]

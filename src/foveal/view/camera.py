@@ -87,16 +87,23 @@ class Camera:
         up: ArrayLike = (0.0, 1.0, 0.0),
         **options: Any,
     ) -> Self:
-        """A camera that sees the whole box `low` to `high` from `direction` (from the box to the eye)."""
+        """A camera that just sees the whole box `low` to `high` from `direction` (from the box to the eye).
+
+        It aims at the middle of the box and keeps 4 % of the distance as a margin.
+        """
         low, high = _triple(low, "low"), _triple(high, "high")
-        angle = options.get("field_of_view", math.radians(45))
-        aspect = options.get("width", 1280) / options.get("height", 720)
-        half = min(angle / 2, math.atan(math.tan(angle / 2) * aspect))
-        radius = max(float(np.linalg.norm(high - low)) / 2, 1e-300)
         towards = _triple(direction, "direction")
         centre = (low + high) / 2
-        eye = centre + towards / np.linalg.norm(towards) * radius / math.sin(half)
-        return cls.of(eye, centre, up=up, **options)
+        size = max(float(np.linalg.norm(high - low)), 1e-300)
+        # First from so far that any corner is ahead; the basis does not change on the way to the box.
+        camera = cls.of(centre + towards / np.linalg.norm(towards) * size, centre, up=up, **options)
+        corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3) - centre
+        right, above, backward = camera.basis() @ corners.T
+        tan_y = math.tan(camera.field_of_view / 2)
+        tan_x = tan_y * camera.width / camera.height
+        distance = backward + np.maximum(np.abs(right) / tan_x, np.abs(above) / tan_y)
+        away = max(1.04 * float(distance.max()), size / 1000)
+        return cls.of(centre + camera.basis()[2] * away, centre, up=up, **options)
 
     def basis(self) -> NDArray[np.float64]:
         """(3, 3): the camera's right, up and backward unit vectors as rows."""

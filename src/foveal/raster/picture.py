@@ -1,0 +1,159 @@
+"""A mesh and a camera to a picture, and the picture to a PNG."""
+
+import os
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from foveal.base.errors import FovealError
+from foveal.base.files import whole_file
+from foveal.base.tasks import Executor, threads
+from foveal.mesh.trimesh import TriMesh
+from foveal.view.camera import Camera
+
+from . import _kernels_shade as kernels
+from .rasterise import BAND_ROWS, Screen, run_all
+from .shade import PLASTER, decode_srgb, shade_band, tables, vertex_normals
+
+__all__ = ["Colour", "gradient", "picture", "write_png"]
+
+Colour = tuple[int, int, int]
+Background = Colour | NDArray[np.uint8] | None
+
+
+def picture(
+    mesh: TriMesh,
+    camera: Camera,
+    /,
+    *,
+    background: Background = None,
+    supersampling: int = 2,
+    is_flat: bool = False,
+    has_colours: bool = True,
+    plain: Colour = PLASTER,
+    executor: Executor | None = None,
+) -> NDArray[np.uint8]:
+    """Draw a mesh as the viewer does: lit from the camera, smooth, from both sides.
+
+    Parameters
+    ----------
+    mesh : TriMesh
+        Without normals of its own it gets means of its faces'.
+    camera : Camera
+        Its size is the picture's.
+    background : (red, green, blue) or (height, width, 3) uint8, optional
+        sRGB; transparent by default. `gradient` makes one.
+    supersampling : int
+        Samples a pixel along each side, 1 to 8: their squares are averaged, as linear light.
+    is_flat : bool
+        Whether each triangle shows its own normal.
+    has_colours : bool
+        Whether the mesh's colours are shown; else, and without colours, it is `plain` (sRGB).
+    executor : Executor, optional
+        Local threads by default. The bytes do not depend on it.
+
+    Returns
+    -------
+    (height, width, 4) uint8
+        sRGB and opacity, rows from the top. Colour is not multiplied by opacity.
+
+    Raises
+    ------
+    FovealError
+        If the picture, or the background, is of a size that cannot be.
+
+    Examples
+    --------
+    >>> triangle = TriMesh.of([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> pixels = picture(triangle, Camera.of([0, 0, 3], [0, 0, 0], width=3, height=3))
+    >>> pixels[1, 1].tolist(), pixels[0, 0].tolist()
+    ([196, 191, 181, 255], [0, 0, 0, 0])
+    """
+    if not 1 <= supersampling <= 8:
+        raise ValueError(f"supersampling must be from 1 to 8, got {supersampling}")
+    if executor is None:
+        with threads() as pool:
+            return picture(
+                *(mesh, camera),
+                background=background,
+                supersampling=supersampling,
+                is_flat=is_flat,
+                has_colours=has_colours,
+                plain=plain,
+                executor=pool,
+            )
+    behind = _linear_background(background, camera)
+    wide = replace(camera, width=camera.width * supersampling, height=camera.height * supersampling)
+    screen = Screen(mesh.positions, mesh.faces, wide, executor=executor)
+    normals = None if is_flat else vertex_normals(mesh)
+    colours = mesh.colours if has_colours else None
+    out = np.empty((camera.height, camera.width, 4), dtype=np.uint8)
+
+    # A group of bands is a whole number of the picture's rows, so that no square of samples is torn.
+    bands_a_group = supersampling // np.gcd(BAND_ROWS, supersampling)
+    rows_a_group = bands_a_group * BAND_ROWS // supersampling
+
+    def draw(group: int) -> None:
+        bands = range(group * bands_a_group, min((group + 1) * bands_a_group, screen.bands))
+        face_ids = [screen.draw(band)[1] for band in bands]
+        linear = [
+            shade_band(screen, band, ids, normals=normals, colours=colours, plain=plain)
+            for band, ids in zip(bands, face_ids, strict=True)
+        ]
+        rows = slice(group * rows_a_group, (group + 1) * rows_a_group)
+        back = np.empty((0, 0, 3), dtype=np.float32) if behind is None else behind[rows]
+        samples = (np.concatenate(linear), np.concatenate(face_ids))
+        kernels.develop(*samples, supersampling, back, behind is not None, tables()[1], out[rows])
+
+    run_all(executor, draw, range(-(-screen.bands // bands_a_group)))
+    return out
+
+
+def _linear_background(background: Background, camera: Camera) -> NDArray[np.float32] | None:
+    if background is None:
+        return None
+    colours = np.asarray(background, dtype=np.float64)
+    shape = (camera.height, camera.width, 3)
+    if colours.shape not in ((3,), shape) or not ((colours >= 0) & (colours <= 255)).all():
+        raise FovealError(
+            f"background: it must be three numbers from 0 to 255, or as many a pixel, in shape {shape}."
+        )
+    return np.ascontiguousarray(np.broadcast_to(decode_srgb(colours / 255), shape), dtype=np.float32)
+
+
+def gradient(
+    camera: Camera, /, *, middle: Colour = (250, 249, 247), corners: Colour = (214, 211, 206)
+) -> NDArray[np.uint8]:
+    """(height, width, 3) uint8: a background like the viewer's, from its middle to its corners.
+
+    Examples
+    --------
+    >>> gradient(Camera.of([0, 0, 1], [0, 0, 0], width=3, height=3))[0, 0].tolist()
+    [230, 228, 224]
+    """
+    aspect = camera.width / camera.height
+    x = (2 * np.arange(camera.width) + 1) / camera.width - 1
+    y = 1 - (2 * np.arange(camera.height) + 1) / camera.height
+    away = np.sqrt((x * min(1, aspect)) ** 2 + (y[:, None] * min(1, 1 / aspect) - 0.12) ** 2)
+    t = np.clip((away - 0.1) / 1.4, 0, 1)[..., None]
+    t = t * t * (3 - 2 * t)
+    # Steps of one level in a flat gradient show as bands: a fixed noise below one level hides them.
+    column, row = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
+    noise = np.modf(52.9829189 * np.modf(column * 0.06711056 + row * 0.00583715)[0])[0][..., None]
+    colours = np.array(middle) * (1 - t) + np.array(corners) * t
+    levels: NDArray[np.float64] = np.clip(np.floor(colours + noise), 0, 255)
+    return levels.astype(np.uint8)
+
+
+def write_png(pixels: NDArray[np.uint8], path: str | os.PathLike[str], /) -> None:
+    """Write a picture, (height, width, 3 or 4) uint8 sRGB, to a PNG file that appears when it is whole.
+
+    Raises
+    ------
+    FovealError
+        If `path` cannot be written.
+    """
+    with whole_file(path) as stream:
+        Image.fromarray(np.ascontiguousarray(pixels)).save(stream, format="PNG")
