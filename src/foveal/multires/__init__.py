@@ -1,1 +1,7 @@
-"""Multiresolution patches: partition, simplify, bound, encode, build."""
+"""Multiresolution meshes: partition, simplify, bound, encode; and reading what was built."""
+
+from .build import BuildReport, build
+from .read import Multires, extract
+from .read import open_multires as open
+
+__all__ = ["BuildReport", "Multires", "build", "extract", "open"]

@@ -1,0 +1,255 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Inner loops that carry triangles between partitions: kD-trees, joining and splitting of pieces."""
+
+import numpy as np
+
+from foveal.base.jit import kernel
+
+MISSING = -1
+
+
+@kernel
+def select(points, order, begin, end, axis, rank):
+    """Reorder `order[begin:end]` such that the place `rank` holds what sorting by `axis` would put there.
+
+    Equal coordinates are ordered by index, so that the result depends on nothing else.
+    """
+    while end - begin > 1:
+        middle = order[(begin + end) // 2]
+        pivot = points[middle, axis]
+        i, j = begin, end - 1
+        while i <= j:
+            a = order[i]
+            while points[a, axis] < pivot or (points[a, axis] == pivot and a < middle):
+                i += 1
+                a = order[i]
+            b = order[j]
+            while points[b, axis] > pivot or (points[b, axis] == pivot and b > middle):
+                j -= 1
+                b = order[j]
+            if i <= j:
+                order[i], order[j] = b, a
+                i += 1
+                j -= 1
+        if rank <= j:
+            end = j + 1
+        elif rank >= i:
+            begin = i
+        else:
+            return
+
+
+@kernel
+def grow(points, order, limit, parity, low, high, nodes, planes, stack, boxes):
+    """Split `points` by planes until no cell has more than `limit`: (nodes, cells).
+
+    nodes[i] = (axis, left, right): a child below 0 is the cell -1 - child. planes[i] is where it is split.
+    The share below a plane is 0.4 and 0.6 in turn with depth, beginning with 0.6 if `parity`
+    (Ponchio 2015, section 3.2), on the longest side of the cell.
+    """
+    used, cells, top = 0, 0, 1
+    stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = 0, len(order), 0, -1
+    boxes[0, 0], boxes[0, 1] = low, high
+    while top > 0:
+        top -= 1
+        begin, end, depth, link = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
+        box = boxes[top].copy()
+        axis = 0
+        for k in range(1, 3):
+            if box[1, k] - box[0, k] > box[1, axis] - box[0, axis]:
+                axis = k
+        is_leaf = end - begin <= limit or len(stack) - top < 4 or used >= len(nodes)
+        cut = begin
+        if not is_leaf:
+            share = 4 if (depth + parity) % 2 == 0 else 6
+            rank = begin + (end - begin) * share // 10
+            for _ in range(3):  # a side on which all coordinates are one cannot be split
+                select(points, order, begin, end, axis, rank)
+                plane = points[order[rank], axis]
+                i, j = begin, end - 1
+                while i <= j:
+                    if points[order[i], axis] < plane:
+                        i += 1
+                    else:
+                        order[i], order[j] = order[j], order[i]
+                        j -= 1
+                cut = i
+                if cut > begin:
+                    break
+                axis = (axis + 1) % 3
+            is_leaf = cut == begin
+        index = -1 - cells if is_leaf else used
+        if link >= 0:
+            nodes[link // 2, 1 + link % 2] = index
+        if is_leaf:
+            cells += 1
+            continue
+        plane = points[order[cut], axis]
+        for i in range(cut, end):
+            plane = min(plane, points[order[i], axis])
+        nodes[used, 0] = axis
+        planes[used] = plane
+        for side in (1, 0):  # the lower side is popped first
+            stack[top, 0] = begin if side == 0 else cut
+            stack[top, 1] = cut if side == 0 else end
+            stack[top, 2] = depth + 1
+            stack[top, 3] = 2 * used + side
+            boxes[top] = box
+            boxes[top, 1 - side, axis] = plane
+            top += 1
+        used += 1
+    return used, cells
+
+
+@kernel
+def assign(positions, faces, nodes, planes, out):
+    """The cell of each face, by its centroid (times three, as the tree's points are)."""
+    for f in range(len(faces)):
+        if len(nodes) == 0:
+            out[f] = 0
+            continue
+        node = 0
+        while node >= 0:
+            axis = nodes[node, 0]
+            s = 0.0
+            for k in range(3):
+                s += positions[faces[f, k], axis]
+            node = nodes[node, 1] if s < planes[node] else nodes[node, 2]
+        out[f] = -1 - node
+
+
+@kernel
+def join(ids, table, keys, local, unique):
+    """Number equal ids: local[i] is the number of ids[i], unique[local[i]] the first i that has it.
+
+    table and keys are scratch of a power of two, at least twice as many as there are ids.
+    """
+    mask = len(table) - 1
+    table[:] = MISSING
+    count = 0
+    for i in range(len(ids)):
+        slot = (ids[i] * 2654435761) & mask
+        while table[slot] != MISSING and keys[slot] != ids[i]:
+            slot = (slot + 1) & mask
+        if table[slot] == MISSING:
+            table[slot] = count
+            keys[slot] = ids[i]
+            unique[count] = i
+            count += 1
+        local[i] = table[slot]
+    return count
+
+
+@kernel
+def claim(ids, cell, owner):
+    """Write down that `cell` uses these ids: owner -1 nobody yet, -2 several."""
+    for i in ids:
+        if owner[i] == -1:
+            owner[i] = cell
+        elif owner[i] != cell:
+            owner[i] = -2
+
+
+@kernel
+def is_shared(ids, owner, out):
+    """Whether several cells use the id."""
+    for i in range(len(ids)):
+        out[i] = owner[ids[i]] == -2
+
+
+@kernel
+def split(faces, cell_of, number, first_face, order, stamps, index, vertices, first_vertex, local_faces):
+    """Group faces by cell, each group with vertices of its own.
+
+    number : how many cells. Out: order (m,) the faces grouped, first_face (number + 1,); vertices, the
+    original index of each group's vertices one group after the other, first_vertex (number + 1,);
+    local_faces (m, 3) in the order of `order`. stamps (n,) and index (n,) are scratch.
+    """
+    first_face[:] = 0
+    for f in range(len(faces)):
+        first_face[cell_of[f] + 1] += 1
+    for c in range(number):
+        first_face[c + 1] += first_face[c]
+    for f in range(len(faces)):
+        c = cell_of[f]
+        order[first_face[c]] = f
+        first_face[c] += 1
+    for c in range(number, 0, -1):
+        first_face[c] = first_face[c - 1]
+    first_face[0] = 0
+    stamps[:] = -1
+    total = 0
+    for c in range(number):
+        first_vertex[c] = total
+        for i in range(first_face[c], first_face[c + 1]):
+            for k in range(3):
+                v = faces[order[i], k]
+                if stamps[v] != c:
+                    stamps[v] = c
+                    index[v] = total - first_vertex[c]
+                    vertices[total] = v
+                    total += 1
+                local_faces[i, k] = index[v]
+    first_vertex[number] = total
+    return total
+
+
+@kernel
+def vertex_normals(positions, faces, out):
+    """Sum of the area vectors of the faces around each vertex, (n, 3) float64."""
+    out[:] = 0.0
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy, uz = (
+            positions[b, 0] - positions[a, 0],
+            positions[b, 1] - positions[a, 1],
+            positions[b, 2] - positions[a, 2],
+        )
+        vx, vy, vz = (
+            positions[c, 0] - positions[a, 0],
+            positions[c, 1] - positions[a, 1],
+            positions[c, 2] - positions[a, 2],
+        )
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        for k in range(3):
+            v = faces[f, k]
+            out[v, 0] += x
+            out[v, 1] += y
+            out[v, 2] += z
+
+
+@kernel
+def mix(a, b, c):
+    """A hash of three 64-bit patterns."""
+    h = a * np.uint64(0x9E3779B97F4A7C15)
+    h = (h ^ (h >> np.uint64(29))) + b
+    h = h * np.uint64(0xBF58476D1CE4E5B9)
+    h = (h ^ (h >> np.uint64(32))) + c
+    h = h * np.uint64(0x94D049BB133111EB)
+    return h ^ (h >> np.uint64(31))
+
+
+@kernel
+def weld(bits, first, group, groups, table, keys, twin):
+    """twin[i] = number of the first vertex with exactly the same position, for hashes that fall into `group`.
+
+    bits (k, 3) uint64 are the coordinates' bit patterns of a block whose first vertex has number `first`;
+    table (-1 where free) and keys are kept between blocks. Returns how many new positions came.
+    """
+    mask = np.uint64(len(table) - 1)
+    fresh = 0
+    for i in range(len(bits)):
+        h = mix(bits[i, 0], bits[i, 1], bits[i, 2])
+        if (h >> np.uint64(40)) % np.uint64(groups) != np.uint64(group):
+            continue
+        slot = h & mask
+        while table[slot] != MISSING and not (
+            keys[slot, 0] == bits[i, 0] and keys[slot, 1] == bits[i, 1] and keys[slot, 2] == bits[i, 2]
+        ):
+            slot = (slot + np.uint64(1)) & mask
+        if table[slot] == MISSING:
+            table[slot] = first + i
+            keys[slot, 0], keys[slot, 1], keys[slot, 2] = bits[i, 0], bits[i, 1], bits[i, 2]
+            fresh += 1
+        twin[i] = table[slot]
+    return fresh

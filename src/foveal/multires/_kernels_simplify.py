@@ -1,0 +1,449 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Edge collapse by quadrics inside one cell: arrays in, arrays changed in place.
+
+Based on: M. Garland, P. Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
+A quadric is 11 numbers: xx xy xz yy yz zz x y z 1 of the summed squared plane distances, then the area.
+"""
+
+import math
+
+import numpy as np
+
+from foveal.base.jit import kernel
+
+
+@kernel
+def incidence(faces, starts, counts, refs):
+    """Faces around each vertex: `refs[starts[v]:starts[v] + counts[v]]`, a face once even if it repeats v."""
+    counts[:] = 0
+    for f in range(len(faces)):
+        for k in range(3):
+            counts[faces[f, k]] += 1
+    total = 0
+    for v in range(len(starts)):
+        starts[v] = total
+        total += counts[v]
+        counts[v] = 0
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        refs[starts[a] + counts[a]] = f
+        counts[a] += 1
+        if b != a:
+            refs[starts[b] + counts[b]] = f
+            counts[b] += 1
+        if c not in (a, b):
+            refs[starts[c] + counts[c]] = f
+            counts[c] += 1
+
+
+@kernel
+def neighbours(faces, starts, counts, refs, out, is_border):
+    """The face across each edge (k, k + 1), -1 at a border; a vertex of an edge with one face is border.
+
+    Where more than two faces meet, one that runs along the edge the other way is preferred.
+    """
+    is_border[:] = False
+    for f in range(len(faces)):
+        for k in range(3):
+            a, b = faces[f, k], faces[f, (k + 1) % 3]
+            found = -1
+            for i in range(starts[b], starts[b] + counts[b]):
+                g = refs[i]
+                if g == f:
+                    continue
+                g0, g1, g2 = faces[g, 0], faces[g, 1], faces[g, 2]
+                if (g0 == b and g1 == a) or (g1 == b and g2 == a) or (g2 == b and g0 == a):
+                    found = g
+                    break
+                if a in (g0, g1, g2):
+                    found = g
+            out[f, k] = found
+            if found < 0:
+                is_border[a] = True
+                is_border[b] = True
+
+
+@kernel
+def add_plane(quadrics, v, nx, ny, nz, d, weight):
+    """Add weight * (n . x + d)^2 to the quadric of v."""
+    q = quadrics[v]
+    q[0] += weight * nx * nx
+    q[1] += weight * nx * ny
+    q[2] += weight * nx * nz
+    q[3] += weight * ny * ny
+    q[4] += weight * ny * nz
+    q[5] += weight * nz * nz
+    q[6] += weight * nx * d
+    q[7] += weight * ny * d
+    q[8] += weight * nz * d
+    q[9] += weight * d * d
+
+
+@kernel
+def face_quadrics(positions, faces, across, border_weight, quadrics):
+    """Quadrics of all vertices: planes of the faces by area, and a wall along each border edge."""
+    quadrics[:] = 0.0
+    for f in range(len(faces)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy, uz = (
+            positions[b, 0] - positions[a, 0],
+            positions[b, 1] - positions[a, 1],
+            positions[b, 2] - positions[a, 2],
+        )
+        vx, vy, vz = (
+            positions[c, 0] - positions[a, 0],
+            positions[c, 1] - positions[a, 1],
+            positions[c, 2] - positions[a, 2],
+        )
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        length = math.sqrt(nx * nx + ny * ny + nz * nz)
+        if length > 0.0:
+            nx, ny, nz = nx / length, ny / length, nz / length
+            d = -(nx * positions[a, 0] + ny * positions[a, 1] + nz * positions[a, 2])
+            for k in range(3):
+                add_plane(quadrics, faces[f, k], nx, ny, nz, d, 0.5 * length)
+                quadrics[faces[f, k], 10] += 0.5 * length
+        for k in range(3):
+            if across[f, k] >= 0:
+                continue
+            i, j = faces[f, k], faces[f, (k + 1) % 3]
+            ex, ey, ez = (
+                positions[j, 0] - positions[i, 0],
+                positions[j, 1] - positions[i, 1],
+                positions[j, 2] - positions[i, 2],
+            )
+            wx, wy, wz = ey * nz - ez * ny, ez * nx - ex * nz, ex * ny - ey * nx
+            squared = wx * wx + wy * wy + wz * wz
+            if length > 0.0 and squared > 0.0:
+                inverse = 1.0 / math.sqrt(squared)
+                wx, wy, wz = wx * inverse, wy * inverse, wz * inverse
+                d = -(wx * positions[i, 0] + wy * positions[i, 1] + wz * positions[i, 2])
+                add_plane(quadrics, i, wx, wy, wz, d, border_weight * squared)
+                add_plane(quadrics, j, wx, wy, wz, d, border_weight * squared)
+
+
+@kernel
+def value(q, r, x, y, z):
+    """(q + r)(x, y, z): the sum of two quadrics at a point."""
+    return (
+        (q[0] + r[0]) * x * x
+        + 2.0 * (q[1] + r[1]) * x * y
+        + 2.0 * (q[2] + r[2]) * x * z
+        + (q[3] + r[3]) * y * y
+        + 2.0 * (q[4] + r[4]) * y * z
+        + (q[5] + r[5]) * z * z
+        + 2.0 * ((q[6] + r[6]) * x + (q[7] + r[7]) * y + (q[8] + r[8]) * z)
+        + q[9]
+        + r[9]
+    )
+
+
+@kernel
+def place(positions, quadrics, locked, u, v, snap):
+    """(cost, x, y, z) of the best place for the vertex that u and v become, on multiples of `snap`."""
+    q, r = quadrics[u], quadrics[v]
+    ux, uy, uz = positions[u, 0], positions[u, 1], positions[u, 2]
+    vx, vy, vz = positions[v, 0], positions[v, 1], positions[v, 2]
+    ex, ey, ez = vx - ux, vy - uy, vz - uz
+    squared = ex * ex + ey * ey + ez * ez
+    if locked[u]:
+        x, y, z = ux, uy, uz
+    elif locked[v]:
+        x, y, z = vx, vy, vz
+    else:
+        mx, my, mz = 0.5 * (ux + vx), 0.5 * (uy + vy), 0.5 * (uz + vz)
+        a, b, c, d, e, f = q[0] + r[0], q[1] + r[1], q[2] + r[2], q[3] + r[3], q[4] + r[4], q[5] + r[5]
+        # A little pull to the middle makes the system solvable on planes and along straight edges.
+        pull = 1e-3 * (a + d + f) + 1e-300
+        a, d, f = a + pull, d + pull, f + pull
+        gx = -(q[6] + r[6]) - ((a - pull) * mx + b * my + c * mz)
+        gy = -(q[7] + r[7]) - (b * mx + (d - pull) * my + e * mz)
+        gz = -(q[8] + r[8]) - (c * mx + e * my + (f - pull) * mz)
+        xx, xy, xz = d * f - e * e, c * e - b * f, b * e - c * d
+        yy, yz, zz = a * f - c * c, b * c - a * e, a * d - b * b
+        inverse = 1.0 / (a * xx + b * xy + c * xz)
+        x = mx + (xx * gx + xy * gy + xz * gz) * inverse
+        y = my + (xy * gx + yy * gy + yz * gz) * inverse
+        z = mz + (xz * gx + yz * gy + zz * gz) * inverse
+        far = (x - mx) * (x - mx) + (y - my) * (y - my) + (z - mz) * (z - mz)
+        if not far <= 4.0 * squared:  # runs away along a needle, or is NaN
+            x, y, z = mx, my, mz
+        x = snap * math.floor(x / snap + 0.5)
+        y = snap * math.floor(y / snap + 0.5)
+        z = snap * math.floor(z / snap + 0.5)
+    # Mean squared distance, not its integral: what counts is the worst place, not the volume. A trace of
+    # the length lets short edges go first where all is flat.
+    weight = q[10] + r[10]
+    cost = value(q, r, x, y, z) / weight if weight > 0.0 else 0.0
+    return max(cost, 0.0) + 1e-5 * squared, x, y, z
+
+
+@kernel
+def push(heap, size, key):
+    """Put a key into the heap's array (least first) of `size` keys."""
+    i = size
+    while i > 0:
+        parent = (i - 1) >> 1
+        if heap[parent] <= key:
+            break
+        heap[i] = heap[parent]
+        i = parent
+    heap[i] = key
+
+
+@kernel
+def sift(heap, size, i, key):
+    """Let `key` sink from place i of a heap of `size` keys."""
+    while True:
+        child = 2 * i + 1
+        if child >= size:
+            break
+        if child + 1 < size and heap[child + 1] < heap[child]:
+            child += 1
+        if heap[child] >= key:
+            break
+        heap[i] = heap[child]
+        i = child
+    heap[i] = key
+
+
+@kernel
+def offer(positions, quadrics, locked, u, v, snap, versions, slots, heap, sizes):
+    """Put the edge u, v into the queue. sizes: keys in the heap, slots used."""
+    if locked[u] and locked[v]:
+        return
+    cost, _, _, _ = place(positions, quadrics, locked, u, v, snap)
+    slot = sizes[1]
+    slots[slot, 0] = u
+    slots[slot, 1] = v
+    slots[slot, 2] = versions[u] + versions[v]
+    sizes[1] = slot + 1
+    # Bits of a float that is not negative are ordered as the float is; the slot breaks ties.
+    bits = np.int64(np.float32(min(cost, 3e38)).view(np.int32))
+    push(heap, sizes[0], (bits << 32) | slot)
+    sizes[0] += 1
+
+
+@kernel
+def offer_all(
+    positions, faces, alive, across, quadrics, locked, snap, versions, slots, heap, sizes, is_strict
+):
+    """Fill the empty queue with every edge, once where the surface is a proper one."""
+    sizes[:] = 0
+    for f in range(len(faces)):
+        if not alive[f]:
+            continue
+        for k in range(3):
+            u, v = faces[f, k], faces[f, (k + 1) % 3]
+            if u < v or across[f, k] < 0 or not is_strict:
+                offer(positions, quadrics, locked, u, v, snap, versions, slots, heap, sizes)
+
+
+@kernel
+def turns_over(positions, faces, alive, starts, counts, refs, u, v, x, y, z):
+    """Whether a face of u that does not hold v would turn over, or vanish, with u at (x, y, z)."""
+    for i in range(starts[u], starts[u] + counts[u]):
+        f = refs[i]
+        if not alive[f]:
+            continue
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        if v in (a, b, c):
+            continue
+        if a == u:
+            b, c = b, c
+        elif b == u:
+            b, c = c, a
+        else:
+            b, c = a, b
+        ox, oy, oz = positions[b, 0], positions[b, 1], positions[b, 2]
+        ex, ey, ez = positions[c, 0] - ox, positions[c, 1] - oy, positions[c, 2] - oz
+        px, py, pz = positions[u, 0] - ox, positions[u, 1] - oy, positions[u, 2] - oz
+        qx, qy, qz = x - ox, y - oy, z - oz
+        nx, ny, nz = ey * pz - ez * py, ez * px - ex * pz, ex * py - ey * px
+        mx, my, mz = ey * qz - ez * qy, ez * qx - ex * qz, ex * qy - ey * qx
+        old = nx * nx + ny * ny + nz * nz
+        new = mx * mx + my * my + mz * mz
+        dot = nx * mx + ny * my + nz * mz
+        if old > 0.0 and (dot <= 0.0 or dot * dot < 0.04 * old * new):
+            return True
+        # A needle hides its error in a tiny area and makes the next collapse worse.
+        longest = max(ex * ex + ey * ey + ez * ez, qx * qx + qy * qy + qz * qz)
+        if new < 1e-4 * longest * longest and new < old:
+            return True
+    return False
+
+
+@kernel
+def breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, stamp, u, v):
+    """Whether joining u and v would change the surface's topology. Uses marks `stamp` and `stamp + 1`."""
+    shared = 0
+    for i in range(starts[u], starts[u] + counts[u]):
+        f = refs[i]
+        if alive[f]:
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+            marks[a] = stamp
+            marks[b] = stamp
+            marks[c] = stamp
+            if v in (a, b, c):
+                shared += 1
+    marks[u] = 0
+    marks[v] = 0
+    common = 0
+    for i in range(starts[v], starts[v] + counts[v]):
+        f = refs[i]
+        if not alive[f]:
+            continue
+        for k in range(3):
+            w = faces[f, k]
+            if marks[w] == stamp:
+                marks[w] = stamp + 1
+                common += 1
+                if valence[w] <= (2 if not is_border[w] else 1) + (1 if shared > 1 else 0):
+                    return True  # w would be left with two faces back to back, or none
+    if common != shared or shared == 0:
+        return True
+    if is_border[u] and is_border[v] and shared != 1:
+        return True  # two borders would touch in a point
+    left = valence[u] + valence[v] - 2 * shared
+    return left < (1 if shared == 1 else 3)
+
+
+@kernel
+def blend(attributes, positions, u, v, x, y, z):
+    """Attributes of the new vertex, by where it lies along the edge."""
+    ex, ey, ez = (
+        positions[v, 0] - positions[u, 0],
+        positions[v, 1] - positions[u, 1],
+        positions[v, 2] - positions[u, 2],
+    )
+    squared = ex * ex + ey * ey + ez * ez
+    s = 0.5
+    if squared > 0.0:
+        dx, dy, dz = x - positions[u, 0], y - positions[u, 1], z - positions[u, 2]
+        s = min(1.0, max(0.0, (dx * ex + dy * ey + dz * ez) / squared))
+    for k in range(attributes.shape[1]):
+        attributes[u, k] += np.float32(s) * (attributes[v, k] - attributes[u, k])
+
+
+@kernel
+def merge(faces, alive, starts, counts, refs, end, valence, u, v):
+    """Rename v to u in all faces; what has both dies. u's list moves to `end`. Returns (died, end)."""
+    died = 0
+    begin = end
+    for i in range(starts[u], starts[u] + counts[u]):
+        f = refs[i]
+        if not alive[f]:
+            continue
+        if v in (faces[f, 0], faces[f, 1], faces[f, 2]):
+            alive[f] = False
+            died += 1
+            for k in range(3):
+                valence[faces[f, k]] -= 1
+        else:
+            refs[end] = f
+            end += 1
+    for i in range(starts[v], starts[v] + counts[v]):
+        f = refs[i]
+        if not alive[f]:
+            continue
+        for k in range(3):
+            if faces[f, k] == v:
+                faces[f, k] = u
+        refs[end] = f
+        end += 1
+    starts[u] = begin
+    counts[u] = end - begin
+    valence[u] = end - begin
+    valence[v] = 0
+    return died, end
+
+
+@kernel
+def compact(alive, starts, counts, refs, fresh):
+    """Copy the lists without dead faces into `fresh`; returns how much of it is used."""
+    end = 0
+    for v in range(len(starts)):
+        begin = end
+        for i in range(starts[v], starts[v] + counts[v]):
+            if alive[refs[i]]:
+                fresh[end] = refs[i]
+                end += 1
+        starts[v] = begin
+        counts[v] = end - begin
+    refs[:end] = fresh[:end]
+    return end
+
+
+@kernel
+def collapse(
+    positions,
+    faces,
+    alive,
+    starts,
+    counts,
+    refs,
+    fresh,
+    end,
+    valence,
+    is_border,
+    quadrics,
+    attributes,
+    locked,
+    snap,
+    versions,
+    slots,
+    heap,
+    sizes,
+    marks,
+    stamp,
+    live,
+    target,
+    is_strict,
+):
+    """Collapse cheapest edges until `target` faces live or the queue is empty: (live, end, stamp).
+
+    Strict: no face turns over and the topology stays. Not strict: anything goes that keeps locked
+    vertices; each edge of a closed surface still has an even number of faces, since renaming one vertex
+    maps cycles to cycles.
+    """
+    while live > target and sizes[0] > 0:
+        slot = heap[0] & 0xFFFFFFFF
+        sizes[0] -= 1
+        if sizes[0] > 0:
+            sift(heap, sizes[0], 0, heap[sizes[0]])
+        u, v = slots[slot, 0], slots[slot, 1]
+        if valence[u] == 0 or valence[v] == 0 or versions[u] + versions[v] != slots[slot, 2]:
+            continue
+        if locked[v]:
+            u, v = v, u
+        _, x, y, z = place(positions, quadrics, locked, u, v, snap)
+        if is_strict:
+            stamp += 2
+            if breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, stamp, u, v):
+                continue
+            if turns_over(positions, faces, alive, starts, counts, refs, u, v, x, y, z):
+                continue
+            if turns_over(positions, faces, alive, starts, counts, refs, v, u, x, y, z):
+                continue
+        if end + counts[u] + counts[v] > len(refs):
+            end = compact(alive, starts, counts, refs, fresh)
+        if not locked[u]:
+            blend(attributes, positions, u, v, x, y, z)
+        died, end = merge(faces, alive, starts, counts, refs, end, valence, u, v)
+        live -= died
+        positions[u, 0] = x
+        positions[u, 1] = y
+        positions[u, 2] = z
+        quadrics[u] += quadrics[v]
+        is_border[u] |= is_border[v]
+        versions[u] += 1
+        stamp += 2
+        if sizes[1] + 3 * counts[u] > len(slots):
+            break  # the caller fills the queue anew
+        for i in range(starts[u], starts[u] + counts[u]):
+            for k in range(3):
+                w = faces[refs[i], k]
+                if w != u and marks[w] != stamp:
+                    marks[w] = stamp
+                    offer(positions, quadrics, locked, u, w, snap, versions, slots, heap, sizes)
+    return live, end, stamp

@@ -1,0 +1,235 @@
+"""One cell of one level: what it shows as patches, and the simplified piece that stands for it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _kernels_cells as kernels
+from .bounds import deviation
+from .codec import Patch, quantise_normals
+from .pieces import Piece, join
+from .simplify import simplify
+
+__all__ = ["CellResult", "CellTask", "SharedNormals", "work"]
+
+
+@dataclass(frozen=True, slots=True)
+class CellTask:
+    """All that a worker needs, so that it may be on another machine.
+
+    Attributes
+    ----------
+    pieces : list of Piece
+        The triangles in the cell, one piece for each cell of the finer level that made them.
+    is_shared : list of (n,) bool
+        For the vertices of each piece whether another cell of this level uses them.
+    ratio : float
+        What it takes to turn the pieces' positions into steps of the grid; 1 unless they come from the
+        door, where the grid is finer.
+    offset : float
+        How far those positions may be from the original, in steps of the grid.
+    target, relaxed_target : int
+        Triangles wanted, and above which topology is given up; see `simplify`.
+    snap : int
+        New vertices are put on multiples of so many steps.
+    normal_bits : int
+        Of each octahedral coordinate, 0 for no normals.
+    has_colours, has_normals : bool
+        What the attributes are.
+    is_first : bool
+        Whether the pieces come from the door.
+    """
+
+    pieces: list[Piece]
+    is_shared: list[NDArray[np.bool_]]
+    ratio: float
+    offset: float
+    target: int
+    relaxed_target: int
+    snap: int
+    normal_bits: int
+    has_colours: bool
+    has_normals: bool
+    is_first: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SharedNormals:
+    """Area vectors that a cell adds to vertices which other cells share.
+
+    Attributes
+    ----------
+    ids : (k,) int32
+    sums : (k, 3) float64
+    """
+
+    ids: NDArray[np.int32]
+    sums: NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class CellResult:
+    """A cell's patches and what replaces them.
+
+    Attributes
+    ----------
+    patches : list of Patch
+        In the order of the task's pieces.
+    open_normals : list of ((k,) int32, (k,) int32)
+        For each patch the vertices whose normal needs other cells' sums, and their ids.
+    shared : SharedNormals or None
+    coarse : Piece
+        The simplified cell.
+    error : float
+        The largest bound of `coarse`, in steps.
+    low, high : (3,) int32
+        Box of patches and `coarse`.
+    vertices, locked, triangles : int
+        Of the cell before; vertices count for the cell where they are first used only if `is_first`.
+    is_relaxed : bool
+    """
+
+    patches: list[Patch]
+    open_normals: list[tuple[NDArray[np.int32], NDArray[np.int32]]]
+    shared: SharedNormals | None
+    coarse: Piece
+    error: float
+    low: NDArray[np.int32]
+    high: NDArray[np.int32]
+    vertices: int
+    locked: int
+    triangles: int
+    is_relaxed: bool
+    own_vertices: int = 0
+    duplicate: int = 0
+    edges: tuple[int, int] = (0, 0)
+    open_edges: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 3), np.int64))
+
+
+def work(task: CellTask) -> CellResult:
+    """Join the pieces of a cell, make its patches, simplify it and bound the error."""
+    pieces = [_on_grid(p, task) for p in task.pieces] if task.is_first else task.pieces
+    whole, maps = join(pieces)
+    locked = np.zeros(len(whole.ids), np.bool_)
+    for shared, where in zip(task.is_shared, maps, strict=True):
+        locked[where] = shared
+    if task.is_first:  # pieces were cut by how the file was read: here they are one patch
+        pieces, maps = [whole], [np.arange(len(whole.ids), dtype=np.int32)]
+    # Local coordinates: integers in doubles, near zero, so that quadrics do not lose digits.
+    middle = (whole.positions.min(axis=0).astype(np.int64) + whole.positions.max(axis=0)) // 2
+    middle -= middle % task.snap
+    local = (whole.positions - middle).astype(np.float64)
+    patches, open_normals, shared_normals = _patches(task, whole, pieces, maps, local, locked)
+    coarse = simplify(
+        local,
+        whole.faces,
+        locked,
+        target=task.target,
+        relaxed_target=task.relaxed_target,
+        attributes=whole.attributes,
+        snap=float(task.snap),
+    )
+    errors = deviation(local, whole.faces, whole.errors, coarse)
+    piece = Piece(
+        whole.ids[coarse.kept],
+        (coarse.positions + middle).astype(np.int32),
+        coarse.faces,
+        errors,
+        coarse.attributes,
+    )
+    result = CellResult(
+        patches,
+        open_normals,
+        shared_normals,
+        piece,
+        float(errors.max()) if len(errors) else 0.0,
+        np.minimum(whole.positions.min(axis=0), piece.positions.min(axis=0)),
+        np.maximum(whole.positions.max(axis=0), piece.positions.max(axis=0)),
+        len(whole.ids),
+        int(locked.sum()),
+        len(whole.faces),
+        coarse.is_relaxed,
+    )
+    if task.is_first:
+        result.own_vertices = int((~locked).sum())
+        _count_oddities(whole, locked, result)
+    return result
+
+
+def _on_grid(piece: Piece, task: CellTask) -> Piece:
+    """From the door's fine grid to the file's, with the distance that each face moved by."""
+    exact = piece.positions * task.ratio
+    positions = np.rint(exact)
+    moved = np.sqrt(((positions - exact) ** 2).sum(axis=1)) + task.offset
+    errors = moved[piece.faces].max(axis=1) * (1 + 1e-6)
+    return Piece(
+        piece.ids, positions.astype(np.int32), piece.faces, errors.astype(np.float32), piece.attributes
+    )
+
+
+def _patches(
+    task: CellTask,
+    whole: Piece,
+    pieces: list[Piece],
+    maps: list[NDArray[np.int32]],
+    local: NDArray[np.float64],
+    locked: NDArray[np.bool_],
+) -> tuple[list[Patch], list[tuple[NDArray[np.int32], NDArray[np.int32]]], SharedNormals | None]:
+    colours = normals = None
+    shared = None
+    if task.has_colours:
+        colours = np.rint(whole.attributes[:, :3]).clip(0, 255).astype(np.uint8)
+    if task.normal_bits and task.has_normals:
+        normals = quantise_normals(whole.attributes[:, -3:], bits=task.normal_bits)
+    elif task.normal_bits:
+        sums = np.empty((len(local), 3))
+        kernels.vertex_normals(local, whole.faces, sums)
+        normals = quantise_normals(sums, bits=task.normal_bits)
+        shared = SharedNormals(whole.ids[locked], sums[locked])
+    patches, waiting = [], []
+    for piece, where in zip(pieces, maps, strict=True):
+        patches.append(
+            Patch(
+                piece.positions,
+                piece.faces,
+                None if normals is None else normals[where],
+                None if colours is None else colours[where],
+            )
+        )
+        mine = np.flatnonzero(locked[where]).astype(np.int32) if shared is not None else np.empty(0, np.int32)
+        waiting.append((mine, piece.ids[mine]))
+    return patches, waiting, shared
+
+
+def _count_oddities(whole: Piece, locked: NDArray[np.bool_], result: CellResult) -> None:
+    """Duplicate triangles and odd edges; edges between shared vertices are left to be counted together."""
+    count = np.int64(len(whole.ids))
+    ends = whole.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    keys = ends.min(axis=1) * count + ends.max(axis=1)
+    edges, uses = np.unique(keys, return_counts=True)
+    a, b = edges // count, edges % count
+    is_open = locked[a] & locked[b]
+    result.edges = (int((uses[~is_open] == 1).sum()), int((uses[~is_open] > 2).sum()))
+    first, second = whole.ids[a[is_open]], whole.ids[b[is_open]]
+    result.open_edges = np.stack(
+        [np.minimum(first, second), np.maximum(first, second), uses[is_open]], axis=1
+    ).astype(np.int64)
+    # A second triangle on three corners has an edge with at least two triangles: look only there.
+    suspects = (uses > 2)[np.searchsorted(edges, keys)].reshape(-1, 3).any(axis=1)
+    suspects |= _is_twin_by_neighbour(whole.faces, edges, uses, keys)
+    if suspects.any():
+        corners = np.sort(whole.faces[suspects], axis=1)
+        result.duplicate = len(corners) - len(np.unique(corners, axis=0))
+
+
+def _is_twin_by_neighbour(
+    faces: NDArray[np.int32], edges: NDArray[np.int64], uses: NDArray[np.int64], keys: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Faces whose three edges all have two faces and the same sum of faces: two back to back."""
+    where = np.searchsorted(edges, keys)
+    number = np.repeat(np.arange(len(faces), dtype=np.int64), 3)
+    sums = np.zeros(len(edges), np.int64)
+    np.add.at(sums, where, number)
+    three = sums[where].reshape(-1, 3)
+    return (three == three[:, :1]).all(axis=1)
