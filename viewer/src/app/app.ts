@@ -1,0 +1,416 @@
+/** The page: scene and tools put together. */
+import { defaultBudgets, deviceHints } from "../scene/device";
+import { UP } from "../scene/frame";
+import { Stage } from "../scene/stage";
+import { openAsset } from "../stream/asset";
+import { DecoderPool } from "../stream/pool";
+import { Streamer } from "../stream/streamer";
+import type { Stats } from "./api";
+import { makeHelp } from "./dialogs";
+import { byId, make } from "./dom";
+import { watchPointer } from "./gestures";
+import { isField, pressKey } from "./keys";
+import { announce, note, showWarning } from "./notices";
+import type { SceneFile } from "./sceneFile";
+import { makeSettings } from "./settings";
+import { copyLink, savePicture } from "./sharing";
+import { formatState, INITIAL, parseState, type State } from "./state";
+import { StatusLine } from "./statusLine";
+import { applyTheme, backgroundOf, onDeviceTheme, resolveTheme } from "./theme";
+import { type Tool, Toolbar } from "./toolbar";
+import { makeTools } from "./tools";
+import { directionWords, WORDS } from "./words";
+
+const ADDRESS_PAUSE_MS = 400;
+const stillQuery = matchMedia("(prefers-reduced-motion: reduce)");
+
+export class App {
+  readonly stage: Stage;
+  readonly #streamer: Streamer;
+  readonly #status: StatusLine;
+  readonly #toolbar: Toolbar;
+  readonly #tools: readonly Tool[];
+  readonly #help = makeHelp();
+  #settings: HTMLDialogElement | undefined;
+  #state: State = INITIAL;
+  #addressTimer = 0;
+  #spokenTimer = 0;
+  #lostStrip: HTMLElement | undefined;
+  #frames = 0;
+  #firstPicture: (() => void) | undefined;
+  readonly firstPicture = new Promise<void>((resolve) => {
+    this.#firstPicture = resolve;
+  });
+
+  /** @throws Problem if the browser has no WebGL2. */
+  constructor(private readonly scene: SceneFile) {
+    const budgets = defaultBudgets(deviceHints());
+    this.stage = new Stage(byId("picture"), {
+      errorPx: budgets.errorPx,
+      triangleBudget: budgets.triangles,
+      isStill: stillQuery.matches,
+      onFrame: () => this.#onFrame(),
+      onLost: () => this.#onLost(),
+      onRestored: () => this.#onRestored(),
+    });
+    const makeWorker = (): Worker =>
+      new Worker(new URL("../stream/worker.ts", import.meta.url), { type: "module" });
+    this.#streamer = new Streamer({
+      pool: new DecoderPool(makeWorker, DecoderPool.sizeFor(navigator.hardwareConcurrency)),
+      budgetBytes: budgets.bytes,
+      onChange: () => this.stage.invalidate(),
+      onProblem: (problem) => showWarning(problem.message, () => this.#streamer.retry()),
+    });
+    this.#status = new StatusLine(() => this.change({ isStatusOn: false }));
+    this.#tools = makeTools(this);
+    this.#toolbar = new Toolbar(byId("tools"), this.#tools);
+    document.title = scene.title;
+    byId("title").textContent = scene.title;
+    byId("picture").setAttribute("aria-label", WORDS.canvas(scene.title));
+    byId("instructions").textContent = WORDS.instructions;
+    this.#applyState();
+    this.#listen();
+  }
+
+  get state(): State {
+    return { ...this.#state, camera: this.stage.navigation.getCamera() };
+  }
+
+  get help(): HTMLDialogElement {
+    return this.#help;
+  }
+
+  /** Fetch and show the scene's assets; settles when all are opened. */
+  async open(onProgress: (share: number) => void): Promise<void> {
+    const { layers } = this.scene;
+    const shares = layers.map(() => 0);
+    const assets = await Promise.all(
+      layers.map(({ url }, i) =>
+        openAsset(url, {
+          onProgress: (share) => {
+            shares[i] = share;
+            onProgress(shares.reduce((sum, s) => sum + s, 0) / shares.length);
+          },
+        }),
+      ),
+    );
+    const parts = assets.map((asset, i) => ({
+      asset,
+      name: layers[i]!.name,
+      isVisible: layers[i]!.isVisible,
+    }));
+    this.stage.open(this.#streamer, parts);
+    this.stage.navigation.setUp(UP[assets[0]!.info.up]);
+    this.stage.navigation.home(false);
+    this.#readAddress();
+    const triangles = assets.reduce((sum, { info }) => sum + info.triangles, 0);
+    byId("subtitle").textContent = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
+    this.#makeViews();
+    if (assets.some(({ source }) => source.whole)) note(WORDS.wholeFile);
+    this.stage.invalidate();
+  }
+
+  /** Change part of the state and show it. */
+  change(change: Partial<State>): void {
+    this.#state = { ...this.#state, ...change };
+    this.#applyState();
+    this.#rememberSoon();
+  }
+
+  home(): void {
+    this.stage.navigation.home(true);
+    this.stage.invalidate();
+    announce(WORDS.home);
+  }
+
+  /** y, z, x and round again. */
+  turnUp(): void {
+    const next = { y: "z", z: "x", x: "y" } as const;
+    const axis = next[this.upName()];
+    this.stage.navigation.setUp(UP[axis]);
+    this.stage.navigation.home(false);
+    this.stage.invalidate();
+    this.#toolbar.update();
+    announce(WORDS.upAxis(axis.toUpperCase()));
+  }
+
+  /** The axis nearest to up. */
+  upName(): "x" | "y" | "z" {
+    const up = this.stage.navigation.camera.up.toArray().map(Math.abs);
+    return (["x", "y", "z"] as const)[up.indexOf(Math.max(...up))] ?? "y";
+  }
+
+  async savePicture(): Promise<void> {
+    await savePicture(await this.stage.screenshot(), this.scene.title);
+    note(WORDS.pictureSaved);
+  }
+
+  async copyLink(): Promise<void> {
+    this.#remember();
+    await copyLink(location.href);
+  }
+
+  async toggleFullscreen(): Promise<void> {
+    if (document.fullscreenElement) await document.exitFullscreen();
+    else await document.documentElement.requestFullscreen?.();
+  }
+
+  toggleTheme(): void {
+    const theme = resolveTheme(this.#state.theme) === "dark" ? "light" : "dark";
+    this.change({ theme });
+    announce(WORDS.themeIs(theme));
+  }
+
+  openSettings(): void {
+    this.#settings ??= this.#makeSettings();
+    this.#settings.showModal();
+  }
+
+  setErrorPx(errorPx: number): void {
+    this.change({ errorPx });
+  }
+
+  setBudgets({ triangles, bytes }: { triangles?: number; bytes?: number }): void {
+    if (triangles !== undefined) this.stage.triangleBudget = triangles;
+    if (bytes !== undefined) this.#streamer.budgetBytes = bytes;
+    this.stage.invalidate();
+  }
+
+  stats(): Stats {
+    const { stage } = this;
+    const { geometries, textures } = stage.renderer.info.memory;
+    return {
+      triangles: stage.drawnTriangles,
+      patches: stage.drawnPatches,
+      receivedBytes: this.#streamer.receivedBytes,
+      allBytes: stage.layers.reduce((sum, layer) => sum + layer.fileBytes, 0),
+      cacheBytes: this.#streamer.cachedBytes,
+      cacheNodes: this.#streamer.cachedNodes,
+      memoryBudgetBytes: this.#streamer.budgetBytes,
+      triangleBudget: stage.triangleBudget,
+      errorPx: stage.errorPx,
+      targetPx: stage.target.basePx,
+      motionFactor: stage.target.factor,
+      inFlight: this.#streamer.inFlight,
+      frameTimes: [...stage.frameTimes],
+      frames: this.#frames,
+      gpu: { geometries, textures },
+      moments: stage.moments,
+      isWholeFile: stage.layers.some((layer) => layer.asset.source.whole !== null),
+    };
+  }
+
+  #applyState(): void {
+    const { stage } = this;
+    const state = this.#state;
+    stage.areColoursOn = state.areColoursOn;
+    stage.arePatchesTinted = state.arePatchesTinted;
+    stage.isWireframe = state.isWireframe;
+    stage.areSpheresOn = state.areSpheresOn;
+    stage.target.basePx = state.errorPx ?? defaultBudgets(deviceHints()).errorPx;
+    stage.layers.forEach((layer, i) => {
+      layer.group.visible = this.scene.layers[i]!.isVisible !== state.toggledLayers.includes(i);
+    });
+    applyTheme(state.theme);
+    stage.background = backgroundOf(state.background, state.theme, this.scene.background);
+    this.#status.isShown = state.isStatusOn;
+    this.#toolbar.update();
+    stage.invalidate();
+  }
+
+  #listen(): void {
+    onDeviceTheme(() => this.#applyState());
+    stillQuery.addEventListener("change", () => {
+      this.stage.isStill = stillQuery.matches;
+    });
+    addEventListener("hashchange", () => this.#readAddress());
+    addEventListener("online", () => this.#streamer.retry());
+    document.addEventListener("fullscreenchange", () => this.#toolbar.update());
+    document.addEventListener("keydown", (event) => this.#onKey(event));
+    watchPointer(this.stage, (x, y) => this.#setPivot(x, y));
+  }
+
+  #onKey(event: KeyboardEvent): void {
+    if (isField(event.target) || document.querySelector("dialog[open]")) return;
+    const { navigation } = this.stage;
+    const isDone = pressKey(event, {
+      orbit: (right, up) => navigation.orbit(right, up),
+      pan: (right, up) => navigation.pan(right, up),
+      zoom: (factor) => navigation.zoom(factor),
+      view: (number) => {
+        const button = byId("views").querySelectorAll("button")[number - 1];
+        button?.click();
+        return button !== undefined;
+      },
+      tool: (letter) => {
+        const tool = this.#tools.find(({ key }) => key === letter);
+        tool?.run();
+        return tool !== undefined;
+      },
+    });
+    if (isDone) {
+      event.preventDefault();
+      this.#sayDirectionSoon();
+    } else if (event.code === "Enter" && event.target === this.stage.canvas) {
+      const box = this.stage.canvas.getBoundingClientRect();
+      this.#setPivot(box.left + box.width / 2, box.top + box.height / 2);
+    }
+  }
+
+  #setPivot(clientX: number, clientY: number): void {
+    const point = this.stage.pick(clientX, clientY);
+    if (point) this.stage.navigation.focus(point);
+    announce(point ? WORDS.pivot : WORDS.nothingThere);
+    this.stage.invalidate();
+  }
+
+  #onFrame(): void {
+    this.#frames++;
+    const { stage } = this;
+    if (stage.moments.firstPicture !== undefined) this.#firstPicture?.();
+    const recent = stage.frameTimes.slice(-20);
+    const mean = recent.reduce((sum, time) => sum + time, 0) / (recent.length || 1);
+    this.#status.update({
+      triangles: stage.drawnTriangles,
+      receivedBytes: this.#streamer.receivedBytes,
+      allBytes: stage.layers.reduce((sum, layer) => sum + layer.fileBytes, 0),
+      errorPx: stage.errorPx,
+      framesPerSecond: stage.isIdle || !recent.length ? null : 1000 / mean,
+    });
+    const progress = byId("progress");
+    if (stage.layers.length) progress.hidden = stage.isIdle;
+    if (stage.isIdle) this.#rememberSoon();
+  }
+
+  #onLost(): void {
+    this.#lostStrip = showWarning(WORDS.lost);
+  }
+
+  #onRestored(): void {
+    this.#lostStrip?.remove();
+    note(WORDS.restored);
+  }
+
+  #makeViews(): void {
+    const nav = byId("views");
+    nav.hidden = this.scene.views.length === 0;
+    for (const view of this.scene.views) {
+      const button = make("button", { type: "button" }, view.name);
+      button.addEventListener("click", () => {
+        this.stage.setCamera(view.camera, true);
+        announce(view.name);
+      });
+      nav.append(button);
+    }
+  }
+
+  #makeSettings(): HTMLDialogElement {
+    const { stage } = this;
+    const own = defaultBudgets(deviceHints());
+    const million = (value: number): string => `${Number((value / 1e6).toPrecision(2))} million`;
+    return makeSettings({
+      numbers: [
+        {
+          id: "error",
+          label: "Error",
+          hint: "Smaller is finer and costs more.",
+          low: 0.5,
+          high: 16,
+          isLogarithmic: true,
+          show: (value) => `${value} px`,
+          get: () => stage.target.basePx,
+          set: (errorPx) => this.setErrorPx(errorPx),
+        },
+        {
+          id: "triangles",
+          label: "Triangles at most",
+          hint: "What the graphics draw in one picture.",
+          low: 1e5,
+          high: 2e7,
+          isLogarithmic: true,
+          show: million,
+          get: () => stage.triangleBudget,
+          set: (triangles) => this.setBudgets({ triangles }),
+        },
+        {
+          id: "memory",
+          label: "Memory at most",
+          hint: "Graphics memory for what is loaded.",
+          low: 32,
+          high: 4096,
+          isLogarithmic: true,
+          show: (value) => `${Math.round(value)} MB`,
+          get: () => this.#streamer.budgetBytes / 2 ** 20,
+          set: (mega) => this.setBudgets({ bytes: mega * 2 ** 20 }),
+        },
+        {
+          id: "view",
+          label: "Field of view",
+          hint: "Vertical angle; small is like a long lens.",
+          low: 10,
+          high: 90,
+          isLogarithmic: false,
+          show: (value) => `${Math.round(value)}°`,
+          get: () => stage.navigation.camera.fov,
+          set: (degrees) => {
+            stage.navigation.setFieldOfView(Math.round(degrees));
+            stage.invalidate();
+          },
+        },
+      ],
+      layers: stage.layers.map((layer, i) => ({
+        name: layer.name,
+        get: () => layer.group.visible,
+        set: () => this.#toggleLayer(i),
+      })),
+      getBackground: () => this.#state.background,
+      setBackground: (background) => this.change({ background }),
+      reset: () => {
+        this.setBudgets({ triangles: own.triangles, bytes: own.bytes });
+        this.change({ errorPx: null, background: INITIAL.background });
+      },
+    });
+  }
+
+  #toggleLayer(index: number): void {
+    const { toggledLayers } = this.#state;
+    const isToggled = toggledLayers.includes(index);
+    this.change({
+      toggledLayers: isToggled
+        ? toggledLayers.filter((i) => i !== index)
+        : [...toggledLayers, index].sort((a, b) => a - b),
+    });
+  }
+
+  /** After a key turned the view: from where it is seen now, once it rests. */
+  #sayDirectionSoon(): void {
+    clearTimeout(this.#spokenTimer);
+    this.#spokenTimer = window.setTimeout(() => {
+      const words = this.stage.navigation.direction();
+      announce(directionWords(...words));
+    }, 700);
+  }
+
+  #readAddress(): void {
+    if (location.hash.length < 2) return;
+    const state = parseState(location.hash);
+    if (!state) {
+      note(WORDS.foreignLink);
+      return;
+    }
+    this.#state = state;
+    if (state.camera) this.stage.setCamera(state.camera);
+    this.#applyState();
+  }
+
+  #rememberSoon(): void {
+    clearTimeout(this.#addressTimer);
+    this.#addressTimer = window.setTimeout(() => this.#remember(), ADDRESS_PAUSE_MS);
+  }
+
+  #remember(): void {
+    if (!this.stage.layers.length) return;
+    const hash = `#${formatState(this.state)}`;
+    if (hash !== location.hash) history.replaceState(history.state, "", hash);
+  }
+}

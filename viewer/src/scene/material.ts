@@ -1,0 +1,144 @@
+/** The shaders of patches: one for all, with parts switched by defines so that the usual case stays cheap. */
+import { DoubleSide, GLSL3, ShaderMaterial, Vector2, Vector3 } from "three";
+import { PLASTER, SHADE_GLSL } from "./shading";
+
+const VERTEX = /* glsl */ `
+in vec2 octahedral;
+in vec3 srgb;
+uniform float normalSteps;
+uniform bool isFlat;
+out vec3 vNormal;
+out vec3 vPosition;
+out vec3 vSrgb;
+
+vec3 unfold(vec2 q) {
+  vec2 e = q / normalSteps;
+  if (min(e.x, e.y) < -1.0) return vec3(0.0);
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  return normalize(n);
+}
+
+void main() {
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
+  vPosition = seen.xyz;
+  // the model matrix is a translation and one scale, so its inverse transpose turns normals as it stands
+  vNormal = isFlat ? vec3(0.0) : mat3(modelViewMatrix) * unfold(octahedral) / length(modelViewMatrix[0]);
+  vSrgb = srgb;
+  gl_Position = projectionMatrix * seen;
+}
+`;
+
+/**
+ * Cross-fade: of two surfaces in one place each pixel shows exactly one, chosen by a hash of the pixel, so
+ * depth stays right and no hole opens: a patch shows where the hash is in [low, high) of its band.
+ */
+const FADE_GLSL = /* glsl */ `
+uniform vec2 band;
+void fade() {
+  // interleaved gradient noise (Jimenez 2014): even over every small neighbourhood
+  float hash = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy), vec2(0.06711056, 0.00583715))));
+  if (hash < band.x || hash >= band.y) discard;
+}
+`;
+
+const FRAGMENT = /* glsl */ `
+in vec3 vNormal;
+in vec3 vPosition;
+in vec3 vSrgb;
+uniform vec3 tint;
+uniform vec3 plaster;
+uniform bool hasColours;
+uniform bool hasTint;
+out vec4 pixel;
+${SHADE_GLSL}
+#ifdef IS_FADING
+${FADE_GLSL}
+#endif
+
+void main() {
+#ifdef IS_FADING
+  fade();
+#endif
+  vec3 flatNormal = normalize(cross(dFdx(vPosition), dFdy(vPosition)));
+  vec3 normal = length(vNormal) < 1e-3 ? flatNormal : normalize(vNormal);
+  vec3 srgb = hasTint ? tint : hasColours ? vSrgb : plaster;
+  pixel = vec4(shade(srgb, normal, normalize(-vPosition)), 1.0);
+}
+`;
+
+const WIRE_FRAGMENT = /* glsl */ `
+in vec3 vNormal;
+in vec3 vPosition;
+in vec3 vSrgb;
+uniform vec4 ink;
+out vec4 pixel;
+${FADE_GLSL}
+void main() {
+  fade();
+  pixel = ink;
+}
+`;
+
+/** Depth along the view axis over \`far\`, in four bytes. */
+const DEPTH_FRAGMENT = /* glsl */ `
+in vec3 vNormal;
+in vec3 vPosition;
+in vec3 vSrgb;
+uniform float far;
+out vec4 pixel;
+void main() {
+  vec4 parts = fract(clamp(-vPosition.z / far, 0.0, 0.9999999) * vec4(1.0, 255.0, 65025.0, 16581375.0));
+  pixel = parts - vec4(parts.yzw / 255.0, 0.0);
+}
+`;
+
+/** What all patch shaders share. \`band\` and \`tint\` are set patch by patch just before it is drawn. */
+export function makeUniforms() {
+  return {
+    normalSteps: { value: 511 },
+    isFlat: { value: false },
+    hasColours: { value: true },
+    hasTint: { value: false },
+    tint: { value: new Vector3(1, 1, 1) },
+    plaster: { value: new Vector3(...PLASTER.map((c) => c / 255)) },
+    band: { value: new Vector2(0, 1) },
+    ink: { value: [0, 0, 0, 0.4] },
+    far: { value: 1 },
+  };
+}
+
+export type PatchUniforms = ReturnType<typeof makeUniforms>;
+
+export interface PatchMaterials {
+  readonly solid: ShaderMaterial;
+  readonly fading: ShaderMaterial;
+  readonly wire: ShaderMaterial;
+  readonly depth: ShaderMaterial;
+  readonly uniforms: PatchUniforms;
+}
+
+export function makeMaterials(): PatchMaterials {
+  const uniforms = makeUniforms();
+  const base = { glslVersion: GLSL3, uniforms, vertexShader: VERTEX, side: DoubleSide };
+  const surface = {
+    ...base,
+    fragmentShader: FRAGMENT,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  };
+  return {
+    solid: new ShaderMaterial(surface),
+    fading: new ShaderMaterial({ ...surface, defines: { IS_FADING: 1 } }),
+    wire: new ShaderMaterial({
+      ...base,
+      fragmentShader: WIRE_FRAGMENT,
+      wireframe: true,
+      transparent: true,
+      depthWrite: false,
+    }),
+    depth: new ShaderMaterial({ ...base, fragmentShader: DEPTH_FRAGMENT }),
+    uniforms,
+  };
+}
