@@ -191,7 +191,9 @@ def _binary_rows(stream: ByteStream, name: str, header: PlyHeader, element: Elem
         if whole:
             table = np.frombuffer(data, dtype=layout, count=whole)
             assert layout.names is not None
-            yield np.stack([table[n].astype(np.float64) for n in layout.names], axis=1), _NO_FACES
+            with np.errstate(invalid="ignore"):  # NaN of any kind is refused later, in a sentence
+                columns = [table[n].astype(np.float64) for n in layout.names]
+            yield np.stack(columns, axis=1), _NO_FACES
         done += whole
         if whole < count:
             raise _truncated(name, element, done)

@@ -53,7 +53,9 @@ class StlSource(MeshSource):
                     )
                 table = np.frombuffer(data, dtype=_TRIANGLE, count=whole)
                 self.bytes_read = stream.bytes_read
-                yield from _triangles(table["corners"].astype(np.float64).reshape(-1, 3), 3 * done)
+                with np.errstate(invalid="ignore"):  # NaN of any kind is refused later, in a sentence
+                    corners = table["corners"].astype(np.float64)
+                yield from _triangles(corners.reshape(-1, 3), 3 * done)
                 done += whole
             self.bytes_read = self.size_hint
 
