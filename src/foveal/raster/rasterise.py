@@ -96,12 +96,12 @@ class Screen:
         count = len(positions)
         self.seen = np.empty((count, 3))
         self._places, self._nearness = np.zeros((count, 2), dtype=np.int32), np.empty(count)
-        vertices = (positions, camera.position, camera.basis(), self.lens)
+        vertices: tuple[Any, ...] = (positions, camera.position, camera.basis(), self.lens)
         placed = (self.seen, self._places, self._nearness)
         run_all(executor, lambda c: kernels.project(*vertices, *c, *placed), _chunks(count))
 
         bands = np.empty((len(faces), 2), dtype=np.int32)
-        arguments = (self.faces, *placed, self.lens, BAND_ROWS)
+        arguments: tuple[Any, ...] = (self.faces, *placed, self.lens, BAND_ROWS)
         run_all(executor, lambda c: kernels.find_bands(*arguments, *c, bands), _chunks(len(faces)))
         self._first, self._entries, clipped = _listed(bands, self.bands)
         self._cut(clipped)
@@ -201,7 +201,7 @@ def rasterise(
     >>> square = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
     >>> rasterise(square, [[0, 1, 3], [1, 2, 3]], camera).face_ids  # samples on the diagonal count once
     array([[-1, -1, -1, -1],
-           [-1,  0,  1, -1],
+           [-1,  1,  1, -1],
            [-1,  0,  1, -1],
            [-1, -1, -1, -1]], dtype=int32)
     """
