@@ -14,14 +14,13 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from foveal import view as _room
+from foveal.base.version import __version__
 
 if TYPE_CHECKING:
     from foveal._api import build, check, export, info, open, publish, read, render, view
     from foveal.base.errors import FovealError
     from foveal.mesh.trimesh import TriMesh
     from foveal.view.camera import Camera
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Camera",
@@ -58,7 +57,7 @@ def __getattr__(name: str) -> Any:
 
 
 class _Room(ModuleType):
-    """`foveal.view` is the room of cameras and, called, the verb: importing the one must not hide the other."""
+    """`foveal.view` is the room of cameras and, called, the verb: importing one must not hide the other."""
 
     def __call__(self, source: Any, /, **options: Any) -> Any:
         from foveal._api import view

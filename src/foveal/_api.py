@@ -91,8 +91,8 @@ def build(
         Bits a coordinate over the largest extent; by default from the errors of simplification.
     step : float, optional
         Grid step in the unit of the mesh, instead of `bits`.
-    normals : str, optional
-        Which normals are stored; see `foveal.multires.build`.
+    normals : "auto" or "none", optional
+        "auto" keeps the mesh's, or makes them where it has none.
     up : "x", "y" or "z", optional
         The axis that points up.
     memory_bytes : int, optional

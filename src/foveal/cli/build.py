@@ -1,8 +1,9 @@
 """foveal build: a mesh into a .fov."""
 
+import dataclasses
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,6 +24,9 @@ from .options import (
 )
 from .report import print_json, reporter
 from .work import build_arguments, dask_executor, refuse_existing
+
+if TYPE_CHECKING:
+    from foveal.multires import BuildReport
 
 __all__ = ["build"]
 
@@ -48,7 +52,8 @@ def build(
 ) -> None:
     """Turn a mesh into one .fov that holds all resolutions.
 
-    It is compressed, and read part by part. Every triangle comes back. The file appears when it is whole; an interrupted build leaves nothing.
+    It is compressed, and read part by part. Every triangle comes back. The file appears when it is whole; an
+    interrupted build leaves nothing.
     """
     from foveal.base.errors import FovealError
     from foveal.scene.prepare import build_file
@@ -57,7 +62,7 @@ def build(
         output = file.with_name(f"{file.name.removesuffix('.gz').rpartition('.')[0] or file.name}.fov")
     if output.suffix.lower() != ".fov":
         raise FovealError(f"{output}: the name must end in .fov.")
-    if file.suffix.lower() in {".json"}:
+    if file.suffix.lower() == ".json":
         raise FovealError(f"{file}: a scene.json is not built; build its meshes one by one.")
     if output.exists() and file.exists() and output.samefile(file):
         raise FovealError(f"{output}: this is the input itself. Name another output.")
@@ -78,31 +83,23 @@ def build(
                 progress=progress,
             ),
         )
-    seconds = time.monotonic() - begin
-    facts = {
-        "file": str(output),
-        "bytes": output.stat().st_size,
-        "seconds": round(seconds, 3),
-        **_facts(report),
-    }
+    facts = {"file": str(output), **dataclasses.asdict(report)}
+    facts["seconds"] = {"total": time.monotonic() - begin, **report.seconds}
     if json:
         print_json(facts)
     elif not quiet:
-        print(f"{output}: {facts['bytes']:,} bytes in {seconds:.1f} s")
-        for name, value in _facts(report).items():
-            if not isinstance(value, (list, dict)) and value is not None:
-                print(
-                    f"  {name.replace('_', ' ')}: {value:,}"
-                    if isinstance(value, int)
-                    else f"  {name.replace('_', ' ')}: {value}"
-                )
+        _print(output, report, facts["seconds"]["total"])
 
 
-def _facts(report: object) -> dict[str, object]:
-    import dataclasses
-
-    return (
-        dataclasses.asdict(report)
-        if dataclasses.is_dataclass(report) and not isinstance(report, type)
-        else {}
+def _print(output: Path, report: "BuildReport", seconds: float) -> None:
+    repairs = report.repairs
+    counts = f"{repairs.triangles:,} triangles, {repairs.vertices:,} vertices"
+    print(f"{output}: {counts}, in {seconds:.1f} s")
+    print(
+        f"  size         {report.bytes:,} bytes, {8 * report.bytes / max(1, repairs.vertices):.2f} bits a vertex"
     )
+    print(f"  patches      {report.patches:,} in {report.nodes:,} nodes, {len(report.levels)} levels")
+    print(f"  grid step    {report.step:.6g}")
+    if repairs.nonmanifold_edges or repairs.boundary_edges:
+        odd = f"{repairs.boundary_edges:,} open, {repairs.nonmanifold_edges:,} of more than two triangles"
+        print(f"  edges        {odd}")

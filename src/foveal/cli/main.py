@@ -12,8 +12,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from foveal import __version__
 from foveal.base.errors import FovealError
+from foveal.base.version import __version__
 
 from .build import build
 from .check import check

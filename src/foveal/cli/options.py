@@ -16,6 +16,7 @@ __all__ = [
     "Json",
     "Memory",
     "Normals",
+    "NormalsKind",
     "Quiet",
     "Size",
     "Source",
@@ -73,8 +74,12 @@ class UpAxis(enum.StrEnum):
     z = "z"
 
 
-_BUILD = "How it is built"
-_WORK = "How it works"
+class NormalsKind(enum.StrEnum):
+    """Which normals are stored."""
+
+    auto = "auto"
+    none = "none"
+
 
 Source = Annotated[
     Path,
@@ -86,9 +91,8 @@ Bits = Annotated[
     int | None,
     typer.Option(
         min=4,
-        max=21,
+        max=24,
         metavar="N",
-        rich_help_panel=_BUILD,
         help="Grid of 2^N steps over the largest extent. More is closer to the input, and larger.",
     ),
 ]
@@ -96,22 +100,18 @@ Step = Annotated[
     float | None,
     typer.Option(
         metavar="LENGTH",
-        rich_help_panel=_BUILD,
         help="Grid step in the file's unit, instead of --bits. Smaller is closer, and larger in bytes.",
     ),
 ]
 Normals = Annotated[
-    str | None,
+    NormalsKind | None,
     typer.Option(
-        metavar="WHICH",
-        rich_help_panel=_BUILD,
-        help="Which normals are stored: none is smallest, keep is truest to the file.",
+        help="auto keeps the file's, or makes them; none is smaller, and shaded flat.",
     ),
 ]
 Up = Annotated[
     UpAxis | None,
     typer.Option(
-        rich_help_panel=_BUILD,
         help="Axis that points up; by default the format's (y; LAS z). Data is never rotated.",
     ),
 ]
@@ -120,7 +120,6 @@ Memory = Annotated[
     typer.Option(
         metavar="SIZE",
         parser=parse_size,
-        rich_help_panel=_WORK,
         help="Memory to keep within, e.g. 2GB. Less is slower: the rest waits on disk.",
     ),
 ]
@@ -129,7 +128,6 @@ Workers = Annotated[
     typer.Option(
         min=1,
         metavar="N",
-        rich_help_panel=_WORK,
         help="Threads; by default one a processor. Fewer leave room for others.",
     ),
 ]
@@ -137,7 +135,6 @@ Dask = Annotated[
     str | None,
     typer.Option(
         metavar="ADDRESS",
-        rich_help_panel=_WORK,
         help="Build on a Dask cluster, e.g. tcp://host:8786. Pays for very large inputs only.",
     ),
 ]

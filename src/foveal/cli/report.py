@@ -1,6 +1,7 @@
 """What the person sees while it works: bars on a terminal, lines elsewhere; all on stderr."""
 
 import json
+import math
 import sys
 import time
 from types import TracebackType
@@ -19,12 +20,20 @@ _LINE_EVERY_S = 5.0
 
 def print_json(data: Any) -> None:
     """The one thing on stdout."""
-    print(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False, default=_plain))
+    print(json.dumps(_plain(data), indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers and arrays, paths and the like, as JSON knows them."""
-    return value.tolist() if hasattr(value, "tolist") else str(value)
+    """As JSON knows it: NumPy's numbers and arrays as Python's, what is not finite as null."""
+    if isinstance(value, dict):
+        return {str(key): _plain(member) for key, member in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(member) for member in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if value is None or isinstance(value, (str, int, float, bool)) else str(value)
 
 
 class Reporter:

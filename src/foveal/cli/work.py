@@ -9,7 +9,7 @@ from foveal.base.errors import FovealError
 from foveal.base.progress import Progress
 from foveal.base.tasks import Executor
 
-from .options import UpAxis
+from .options import NormalsKind, UpAxis
 
 __all__ = ["build_arguments", "dask_executor", "refuse_existing", "refuse_missing"]
 
@@ -40,7 +40,7 @@ def build_arguments(
     *,
     bits: int | None,
     step: float | None,
-    normals: str | None,
+    normals: NormalsKind | None,
     up: UpAxis | None,
     memory: int | None,
     workers: int | None,
@@ -53,7 +53,7 @@ def build_arguments(
     if bits is not None and step is not None:
         raise FovealError("--bits and --step say the same thing in two ways. Give one of them.")
     return {
-        "options": BuildOptions(bits=bits, step=step, normals=normals, up=None if up is None else up.value),
+        "options": BuildOptions(bits=bits, step=step, normals=normals and normals.value, up=up and up.value),
         "memory_bytes": memory,
         "workers": workers,
         "executor": executor,

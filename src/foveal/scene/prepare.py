@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import platformdirs
 
-import foveal
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
+from foveal.base.version import __version__
 from foveal.mesh.trimesh import TriMesh
 
 from .scene import Scene, read_scene, scene_of
@@ -47,7 +47,7 @@ class BuildOptions:
     step : float, optional
         Grid step in the unit of the file, instead of `bits`.
     normals : str, optional
-        Which normals are stored; see `foveal.multires.build`.
+        "auto" or "none"; see `foveal.multires.build`.
     up : str, optional
         The axis that points up, "x", "y" or "z"; by default the format's.
     """
@@ -157,7 +157,7 @@ def prepare_mesh(
     **work: Any,
 ) -> Path:
     """The same for a mesh in memory."""
-    state = hashlib.blake2b(f"{foveal.__version__} {asdict(options)}".encode())
+    state = hashlib.blake2b(f"{__version__} {asdict(options)}".encode())
     for array in (mesh.positions, mesh.faces, mesh.normals, mesh.colours):
         state.update(b"none" if array is None else array.tobytes())
     root = Path(folder) if folder is not None else cache_folder()
@@ -197,7 +197,7 @@ def _stem(path: Path) -> str:
 def _fingerprint(path: Path, options: BuildOptions) -> str:
     """A name for the content and the options."""
     status = path.stat()
-    state = hashlib.blake2b(f"{foveal.__version__} {asdict(options)} {path.suffixes[-2:]}".encode())
+    state = hashlib.blake2b(f"{__version__} {asdict(options)} {path.suffixes[-2:]}".encode())
     state.update(f"{status.st_size}".encode())
     try:
         with path.open("rb") as stream:
