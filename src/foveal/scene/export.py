@@ -11,7 +11,7 @@ from foveal.base.progress import SILENT, Progress
 from foveal.lod.graph import Graph
 from foveal.mesh.trimesh import TriMesh
 
-from .prepare import prepare
+from .prepare import BuildOptions, prepare
 
 __all__ = ["error_for_triangles", "export"]
 
@@ -66,23 +66,28 @@ def export(
         raise FovealError(f"{source}: the error must be a length, 0 or more, got {error}.")
     if triangles is not None and triangles < 1:
         raise FovealError(f"{source}: at least one triangle must be wanted, got {triangles}.")
+    chosen = options.get("options", BuildOptions())
     if source.suffix.lower() != ".fov" and error is None and triangles is None:
-        mesh = read_mesh(source, up=getattr(options.get("options"), "up", None))
+        mesh, up = read_mesh(source, up=chosen.up), chosen.up or "y"
     else:
         with multires.open(prepare(source, progress=progress, **options)) as asset:
             if triangles is not None:
                 error = error_for_triangles(asset.graph, triangles, name=str(source))
             mesh = asset.mesh_of(cut_by_error(asset.graph, error=error).expanded)
+            up = asset.header.get("up", "y")
     if output is not None:
-        _write(mesh, output)
+        _write(mesh, output, up)
     return mesh
 
 
-def _write(mesh: TriMesh, output: Path) -> None:
+def _write(mesh: TriMesh, output: Path, up: str) -> None:
     """In the format that the suffix says."""
     from foveal.mesh.io import write_glb, write_ply
 
-    (write_ply if output.suffix.lower() == ".ply" else write_glb)(mesh, output)
+    if output.suffix.lower() == ".ply":
+        write_ply(mesh, output, comment="made by foveal")
+    else:
+        write_glb(mesh, output, up=up)
 
 
 def error_for_triangles(graph: Graph, triangles: int, /, *, name: str = "mesh") -> float:

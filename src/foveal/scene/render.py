@@ -102,7 +102,12 @@ def render(
                 asset.graph, _moved(camera, -origin), error_px=error_px, triangle_budget=triangle_budget
             )
             meshes.append(asset.mesh_of(seen.expanded))
-    return raster.picture(_joined(meshes), camera)
+    background = _rgb(scene.background) if scene.background else raster.gradient(camera)
+    return np.ascontiguousarray(raster.picture(_joined(meshes), camera, background=background)[..., :3])
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
 def _visible(scene: Scene) -> list[Layer]:
