@@ -19,7 +19,7 @@ def pack(values, widths, words):
     filled = 0
     at = 0
     for i in range(len(values)):
-        width = int(widths[i])
+        width = np.int64(widths[i])
         low = np.uint64(values[i]) & ((np.uint64(1) << np.uint64(width)) - np.uint64(1))
         held |= low << np.uint64(filled)
         filled += width
@@ -40,14 +40,14 @@ def unpack(words, widths, out):
         window = np.uint64(words[word]) | (np.uint64(words[word + 1]) << np.uint64(32))
         mask = (np.uint64(1) << np.uint64(widths[i])) - np.uint64(1)
         out[i] = np.uint32((window >> np.uint64(bit & 31)) & mask)
-        bit += int(widths[i])
+        bit += np.int64(widths[i])
 
 
 @kernel
 def signed_classes(values, classes, raw):
     """Class and raw bits of each value: see `foveal.coding.bits.encode_signed`."""
     for i in range(len(values)):
-        value = int(values[i])
+        value = np.int64(values[i])
         size = value if value >= 0 else -value
         k = 0
         while size:
@@ -62,7 +62,7 @@ def signed_values(classes, words, out):
     """Inverse of `signed_classes` and `pack` together."""
     bit = 0
     for i in range(len(classes)):
-        k = int(classes[i])
+        k = np.int64(classes[i])
         if k == 0:
             out[i] = 0
             continue
@@ -80,7 +80,7 @@ def vector_classes(values, classes, raw, widths):
     for i in range(len(values)):
         most = 0
         for j in range(across):
-            value = int(values[i, j])
+            value = np.int64(values[i, j])
             most |= 2 * value if value > 0 else 2 * (-value) - 1 if value < 0 else 0
         k = 0
         while most:
@@ -90,7 +90,7 @@ def vector_classes(values, classes, raw, widths):
         for j in range(across):
             at = i * across + j
             widths[at] = k
-            raw[at] = np.uint32(int(values[i, j]) + (1 << (k - 1))) if k else np.uint32(0)
+            raw[at] = np.uint32(np.int64(values[i, j]) + (1 << (k - 1))) if k else np.uint32(0)
 
 
 @kernel
@@ -99,7 +99,7 @@ def vector_values(classes, words, out):
     across = out.shape[1]
     bit = 0
     for i in range(len(classes)):
-        k = int(classes[i])
+        k = np.int64(classes[i])
         half = (1 << k) >> 1
         mask = (np.uint64(1) << np.uint64(k)) - np.uint64(1)
         for j in range(across):
