@@ -1,5 +1,15 @@
 """Triangle meshes: the data structure, topology, normals, distance, reading and writing."""
 
+from .io.blocks import FaceBlock, MeshSource, VertexBlock
+from .io.source import open_source, read_mesh, source_from_mesh
 from .trimesh import TriMesh
 
-__all__ = ["TriMesh"]
+__all__ = [
+    "FaceBlock",
+    "MeshSource",
+    "TriMesh",
+    "VertexBlock",
+    "open_source",
+    "read_mesh",
+    "source_from_mesh",
+]

@@ -30,7 +30,7 @@ def ply_ascii():
     return (head + _rows(SOLID.positions) + _rows(np.insert(SOLID.faces, 0, 3, axis=1))).encode()
 
 
-def ply_binary(order="<", count="B", index="i", with_extras=True):
+def ply_binary(order="<", count="B", index="i"):
     """Attributes, an element nobody knows, extra properties before and after the list."""
     names = {"B": "uchar", "b": "char", "H": "ushort", "i": "int", "I": "uint", "h": "short"}
     what = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
@@ -38,7 +38,8 @@ def ply_binary(order="<", count="B", index="i", with_extras=True):
         f"ply\nformat {what} 1.0\nelement vertex 4\nproperty float nx\nproperty double x\nproperty double y\n"
     )
     head += "property double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-    head += "property float ny\nproperty float nz\nelement strange 2\nproperty short a\nproperty list uint short b\n"
+    head += "property float ny\nproperty float nz\nelement strange 2\n"
+    head += "property short a\nproperty list uint short b\n"
     head += (
         f"element face 4\nproperty float quality\nproperty list {names[count]} {names[index]} vertex_index\n"
     )
@@ -57,7 +58,7 @@ def ply_strips(order="<"):
     head = "ply\nformat " + {"<": "binary_little_endian", ">": "binary_big_endian"}[order] + " 1.0\n"
     head += "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
     head += "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-    strip = [0, 1, 2, 3, -1, 3, 1, 0, 2]
+    strip = [0, 1, 2, 3, -1, 1, 0, 3, 2]
     body = SOLID.positions.astype(order + "f4").tobytes() + struct.pack(order + "10i", 9, *strip)
     return head.encode() + body
 

@@ -31,7 +31,7 @@ def test_every_prefix_is_read_or_refused(name, tmp_path):
     path = tmp_path / name
     path.write_bytes(data)
     assert read_or_refuse(path) is not None
-    step = 7 if name.endswith((".glb", ".off")) else 1  # through trimesh, which is slow
+    step = 7 if name.endswith(".glb") else 1  # through trimesh, which is slow
     for length in range(0, len(data), step):
         path.write_bytes(data[:length])
         mesh = read_or_refuse(path)
@@ -44,7 +44,7 @@ def test_damaged_bytes_are_read_or_refused(name, tmp_path):
     data = samples.FILES[name]()
     path = tmp_path / name
     rng = np.random.default_rng(zlib.crc32(name.encode()))
-    rounds = 60 if name.endswith((".glb", ".off")) else 600
+    rounds = 60 if name.endswith(".glb") else 300
     for turn in range(rounds):
         damaged = bytearray(data)
         for _ in range(1 + turn % 3):

@@ -97,5 +97,5 @@ def test_a_word_is_refused_by_name(word, tmp_path):
 
 
 def test_a_token_without_end_is_refused(tmp_path):
-    with pytest.raises(FovealError, match="no number|stands where"):
+    with pytest.raises(FovealError, match=r"no number|stands where"):
         write_and_read(tmp_path, "1 " + "7" * 3_000_000 + "x")

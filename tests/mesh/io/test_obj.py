@@ -77,7 +77,7 @@ def test_normals_of_their_own_numbers_are_dropped_with_a_note(tmp_path):
 
 
 def test_faces_of_two_corners_are_left_out_with_a_note(tmp_path):
-    assert "2 faces of fewer than three" in notes(tmp_path, POINTS + "f 1 2\nf\nf 1 2 3\n")[0]
+    assert "2 faces of fewer than three" in notes(tmp_path, POINTS + "f 1 2\nf 1\nf 1 2 3\n")[0]
 
 
 def test_a_texture_is_sampled_into_vertex_colours(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from foveal.base.errors import FovealError
 from foveal.mesh.io import ply
 from foveal.mesh.io.blocks import FaceBlock, VertexBlock
-from foveal.mesh.io.source import open_source, read_mesh
+from foveal.mesh.io.source import mesh_of, open_source, read_mesh
 from mesh.io import samples
 
 
@@ -52,18 +52,24 @@ def test_binary_of_all_integer_types_with_attributes(order, count, index, tmp_pa
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_strips_restart_and_turn_every_second_triangle(order, tmp_path):
     mesh = read(tmp_path, samples.ply_strips(order))
-    assert mesh.faces.tolist() == [[0, 1, 2], [2, 1, 3], [3, 1, 0], [0, 1, 2]]
+    assert mesh.faces.tolist() == [[0, 1, 2], [2, 1, 3], [1, 0, 3], [3, 0, 2]]
 
 
 def test_polygons_become_fans_in_order(tmp_path):
-    mesh = read(tmp_path, ascii_ply(SQUARE, [[0, 1, 2, 3], [3, 2, 4], [0, 1], [0, 1, 2, 4, 3]]))
+    path = tmp_path / "mesh.ply"
+    path.write_bytes(ascii_ply(SQUARE, [[0, 1, 2, 3], [3, 2, 4], [0, 1], [0, 1, 2, 4, 3]]))
+    source = open_source(path)
+    mesh = mesh_of(source)
+    assert source.notes == ["1 faces of fewer than three corners were left out"]
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [3, 2, 4], [0, 1, 2], [0, 2, 4], [0, 4, 3]]
 
 
 def test_elements_in_any_order_and_lists_beside_vertices(tmp_path):
-    text = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
-    text += "property list uchar float weights\nproperty float z\nproperty float y\nproperty float x\nend_header\n"
-    text += "3 2 1 0\n2 9 9 30 20 10\n0 31 21 11\n1 9 32 22 12\n"
+    lines = ["ply", "format ascii 1.0", "element face 1", "property list uchar int vertex_indices"]
+    lines += ["element vertex 3", "property list uchar float weights"]
+    lines += [f"property float {axis}" for axis in "zyx"]
+    lines += ["end_header", "3 2 1 0", "2 9 9 30 20 10", "0 31 21 11", "1 9 32 22 12"]
+    text = "\n".join(lines) + "\n"
     mesh = read(tmp_path, text.encode())
     assert mesh.faces.tolist() == [[2, 1, 0]]
     assert mesh.positions.tolist() == [[10, 20, 30], [11, 21, 31], [12, 22, 32]]
@@ -107,7 +113,7 @@ def test_blocks_of_any_size_give_the_same_mesh(name, tmp_path, monkeypatch):
         monkeypatch.setattr(numbers, "_CHUNK_BYTES", size)
         source = open_source(path)
         blocks = list(source.blocks())
-        assert len(blocks) > 2
+        assert len(blocks) > 2 or size > 40
         points = np.concatenate([b.positions for b in blocks if isinstance(b, VertexBlock)])
         faces = np.concatenate([b.faces for b in blocks if isinstance(b, FaceBlock)])
         np.testing.assert_array_equal(points, whole.positions)

@@ -22,7 +22,7 @@ __all__ = ["read_other"]
 
 
 def read_other(path: Path, kind: str, /) -> tuple[TriMesh, list[str]]:
-    """Read a file of format `kind` ("off", "glb", "gltf", ...): the mesh and notes about it.
+    """Read a file of format `kind` ("glb", "gltf", ...): the mesh and notes about it.
 
     Scenes become one mesh, each part where its node's transform puts it.
 

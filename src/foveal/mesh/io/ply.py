@@ -66,6 +66,9 @@ class PlySource(MeshSource):
                     if len(faces):
                         yield FaceBlock(faces)
             self.bytes_read = self.size_hint
+            note = f"{header.small} faces of fewer than three corners were left out"
+            if header.small and note not in self.notes:
+                self.notes.append(note)
 
     def _vertex_block(self, element: Element, rows: NDArray[np.float64]) -> VertexBlock:
         place = {p.name: i for i, p in enumerate(element.properties)}
@@ -144,7 +147,7 @@ class _AsciiBody:
 
     def __init__(self, stream: ByteStream, name: str, header: PlyHeader) -> None:
         self._numbers = NumberReader(stream, name, header.rest)
-        self._name = name
+        self._name, self._header = name, header
         self._rest = np.empty(0)
 
     def _more(self, element: Element, rows: int) -> NDArray[np.float64]:
@@ -176,6 +179,7 @@ class _AsciiBody:
             rows, used = walk.take(values)
             self._rest = values[used:].copy()
             yield rows
+        self._header.small += int(walk.state[kernels.SMALL])
 
 
 def _binary_rows(stream: ByteStream, name: str, header: PlyHeader, element: Element) -> Iterator[Rows]:
@@ -232,3 +236,4 @@ def _binary_lists(stream: ByteStream, name: str, header: PlyHeader, element: Ele
         rest = data[used:]
         yield rows
     header.rest = rest + header.rest
+    header.small += int(walk.state[kernels.SMALL])

@@ -51,11 +51,15 @@ class Element:
 
 @dataclass
 class PlyHeader:
-    """`encoding` is "ascii", "<" or ">"; `rest` are bytes of the body that were read along."""
+    """`encoding` is "ascii", "<" or ">"; `rest` are bytes of the body that were read along.
+
+    `small` counts the polygons of fewer than three corners while the body is read.
+    """
 
     encoding: str
     elements: list[Element]
     rest: bytes
+    small: int = 0
 
     def count(self, name: str) -> int:
         """Rows of all elements called `name`."""

@@ -13,6 +13,7 @@ from ..trimesh import TriMesh
 from .blocks import Blocks, FaceBlock, MeshSource, VertexBlock
 from .detect import detect
 from .obj import ObjSource
+from .off import read_off
 from .other import read_other
 from .ply import PlySource
 from .stl import StlSource
@@ -21,7 +22,7 @@ __all__ = ["mesh_of", "open_source", "read_mesh", "source_from_mesh"]
 
 
 def open_source(path: str | os.PathLike[str], /, *, up: str | None = None) -> MeshSource:
-    """Open a mesh file: PLY, STL, OBJ, and by trimesh OFF, GLB, glTF and more; each may be gzipped.
+    """Open a mesh file: PLY, STL, OBJ, OFF, and by trimesh GLB, glTF and more; each may be gzipped.
 
     The format is told from the content; the suffix decides where the content does not.
 
@@ -47,7 +48,7 @@ def open_source(path: str | os.PathLike[str], /, *, up: str | None = None) -> Me
         return StlSource(path, up=up)
     if kind == "obj":
         return ObjSource(path, up=up)
-    mesh, notes = read_other(path, kind)
+    mesh, notes = read_off(path) if kind == "off" else read_other(path, kind)
     source = source_from_mesh(mesh, name=path.name, up=up)
     source.notes += notes
     return source
