@@ -253,3 +253,39 @@ def weld(bits, first, group, groups, table, keys, twin):
             fresh += 1
         twin[i] = table[slot]
     return fresh
+
+
+@kernel
+def odd_edges(faces, starts, counts, refs, locked, open_edges, totals):
+    """Count what is odd: totals = (edges of one face, edges of more than two, faces there already, open).
+
+    Edges between locked vertices may have more faces elsewhere: they go to `open_edges` (k, 3) as (a, b,
+    faces here). starts, counts and refs are the faces around each vertex.
+    """
+    totals[:] = 0
+    for f in range(len(faces)):
+        for k in range(3):
+            a, b, c = faces[f, k], faces[f, (k + 1) % 3], faces[f, (k + 2) % 3]
+            if counts[b] < counts[a]:
+                a, b = b, a
+            uses, is_first, is_copy = 0, True, False
+            for i in range(starts[a], starts[a] + counts[a]):
+                g = refs[i]
+                if faces[g, 0] == b or faces[g, 1] == b or faces[g, 2] == b:
+                    uses += 1
+                    if g < f:
+                        is_first = False
+                        is_copy |= faces[g, 0] == c or faces[g, 1] == c or faces[g, 2] == c
+            if k == 0 and is_copy:
+                totals[2] += 1
+            if not is_first:
+                continue
+            if locked[a] and locked[b]:
+                open_edges[totals[3], 0] = a
+                open_edges[totals[3], 1] = b
+                open_edges[totals[3], 2] = uses
+                totals[3] += 1
+            elif uses == 1:
+                totals[0] += 1
+            elif uses > 2:
+                totals[1] += 1

@@ -66,17 +66,16 @@ def neighbours(faces, starts, counts, refs, out, is_border):
 @kernel
 def add_plane(quadrics, v, nx, ny, nz, d, weight):
     """Add weight * (n . x + d)^2 to the quadric of v."""
-    q = quadrics[v]
-    q[0] += weight * nx * nx
-    q[1] += weight * nx * ny
-    q[2] += weight * nx * nz
-    q[3] += weight * ny * ny
-    q[4] += weight * ny * nz
-    q[5] += weight * nz * nz
-    q[6] += weight * nx * d
-    q[7] += weight * ny * d
-    q[8] += weight * nz * d
-    q[9] += weight * d * d
+    quadrics[v, 0] += weight * nx * nx
+    quadrics[v, 1] += weight * nx * ny
+    quadrics[v, 2] += weight * nx * nz
+    quadrics[v, 3] += weight * ny * ny
+    quadrics[v, 4] += weight * ny * nz
+    quadrics[v, 5] += weight * nz * nz
+    quadrics[v, 6] += weight * nx * d
+    quadrics[v, 7] += weight * ny * d
+    quadrics[v, 8] += weight * nz * d
+    quadrics[v, 9] += weight * d * d
 
 
 @kernel
@@ -123,25 +122,24 @@ def face_quadrics(positions, faces, across, border_weight, quadrics):
 
 
 @kernel
-def value(q, r, x, y, z):
-    """(q + r)(x, y, z): the sum of two quadrics at a point."""
-    return (
-        (q[0] + r[0]) * x * x
-        + 2.0 * (q[1] + r[1]) * x * y
-        + 2.0 * (q[2] + r[2]) * x * z
-        + (q[3] + r[3]) * y * y
-        + 2.0 * (q[4] + r[4]) * y * z
-        + (q[5] + r[5]) * z * z
-        + 2.0 * ((q[6] + r[6]) * x + (q[7] + r[7]) * y + (q[8] + r[8]) * z)
-        + q[9]
-        + r[9]
-    )
-
-
-@kernel
 def place(positions, quadrics, locked, u, v, snap):
     """(cost, x, y, z) of the best place for the vertex that u and v become, on multiples of `snap`."""
-    q, r = quadrics[u], quadrics[v]
+    # Indexed, not sliced: a slice counts a reference, atomically.
+    a, b, c = (
+        quadrics[u, 0] + quadrics[v, 0],
+        quadrics[u, 1] + quadrics[v, 1],
+        quadrics[u, 2] + quadrics[v, 2],
+    )
+    d, e, f = (
+        quadrics[u, 3] + quadrics[v, 3],
+        quadrics[u, 4] + quadrics[v, 4],
+        quadrics[u, 5] + quadrics[v, 5],
+    )
+    g, h, i = (
+        quadrics[u, 6] + quadrics[v, 6],
+        quadrics[u, 7] + quadrics[v, 7],
+        quadrics[u, 8] + quadrics[v, 8],
+    )
     ux, uy, uz = positions[u, 0], positions[u, 1], positions[u, 2]
     vx, vy, vz = positions[v, 0], positions[v, 1], positions[v, 2]
     ex, ey, ez = vx - ux, vy - uy, vz - uz
@@ -152,16 +150,15 @@ def place(positions, quadrics, locked, u, v, snap):
         x, y, z = vx, vy, vz
     else:
         mx, my, mz = 0.5 * (ux + vx), 0.5 * (uy + vy), 0.5 * (uz + vz)
-        a, b, c, d, e, f = q[0] + r[0], q[1] + r[1], q[2] + r[2], q[3] + r[3], q[4] + r[4], q[5] + r[5]
         # A little pull to the middle makes the system solvable on planes and along straight edges.
         pull = 1e-3 * (a + d + f) + 1e-300
-        a, d, f = a + pull, d + pull, f + pull
-        gx = -(q[6] + r[6]) - ((a - pull) * mx + b * my + c * mz)
-        gy = -(q[7] + r[7]) - (b * mx + (d - pull) * my + e * mz)
-        gz = -(q[8] + r[8]) - (c * mx + e * my + (f - pull) * mz)
-        xx, xy, xz = d * f - e * e, c * e - b * f, b * e - c * d
-        yy, yz, zz = a * f - c * c, b * c - a * e, a * d - b * b
-        inverse = 1.0 / (a * xx + b * xy + c * xz)
+        aa, dd, ff = a + pull, d + pull, f + pull
+        gx = -g - (a * mx + b * my + c * mz)
+        gy = -h - (b * mx + d * my + e * mz)
+        gz = -i - (c * mx + e * my + f * mz)
+        xx, xy, xz = dd * ff - e * e, c * e - b * ff, b * e - c * dd
+        yy, yz, zz = aa * ff - c * c, b * c - aa * e, aa * dd - b * b
+        inverse = 1.0 / (aa * xx + b * xy + c * xz)
         x = mx + (xx * gx + xy * gy + xz * gz) * inverse
         y = my + (xy * gx + yy * gy + yz * gz) * inverse
         z = mz + (xz * gx + yz * gy + zz * gz) * inverse
@@ -173,8 +170,15 @@ def place(positions, quadrics, locked, u, v, snap):
         z = snap * math.floor(z / snap + 0.5)
     # Mean squared distance, not its integral: what counts is the worst place, not the volume. A trace of
     # the length lets short edges go first where all is flat.
-    weight = q[10] + r[10]
-    cost = value(q, r, x, y, z) / weight if weight > 0.0 else 0.0
+    weight = quadrics[u, 10] + quadrics[v, 10]
+    total = (
+        x * (a * x + 2.0 * (b * y + c * z + g))
+        + y * (d * y + 2.0 * (e * z + h))
+        + z * (f * z + 2.0 * i)
+        + quadrics[u, 9]
+        + quadrics[v, 9]
+    )
+    cost = total / weight if weight > 0.0 else 0.0
     return max(cost, 0.0) + 1e-5 * squared, x, y, z
 
 
@@ -395,6 +399,7 @@ def collapse(
     heap,
     sizes,
     marks,
+    worst,
     stamp,
     live,
     target,
@@ -416,7 +421,7 @@ def collapse(
             continue
         if locked[v]:
             u, v = v, u
-        _, x, y, z = place(positions, quadrics, locked, u, v, snap)
+        cost, x, y, z = place(positions, quadrics, locked, u, v, snap)
         if is_strict:
             stamp += 2
             if breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, stamp, u, v):
@@ -431,10 +436,12 @@ def collapse(
             blend(attributes, positions, u, v, x, y, z)
         died, end = merge(faces, alive, starts, counts, refs, end, valence, u, v)
         live -= died
+        worst[0] = max(worst[0], cost)
         positions[u, 0] = x
         positions[u, 1] = y
         positions[u, 2] = z
-        quadrics[u] += quadrics[v]
+        for k in range(11):
+            quadrics[u, k] += quadrics[v, k]
         is_border[u] |= is_border[v]
         versions[u] += 1
         stamp += 2

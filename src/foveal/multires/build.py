@@ -184,12 +184,14 @@ def build(
 class _Clock:
     def __init__(self) -> None:
         self._last = time.perf_counter()
+        self._cpu = time.process_time()
         self.laps: dict[str, float] = {}
 
     def lap(self, name: str) -> None:
         now = time.perf_counter()
         self.laps[name] = round(now - self._last, 4)
         self._last = now
+        self.laps[name+'_cpu']=time.process_time()-self._cpu;self._cpu=time.process_time()
 
 
 def _source(source: MeshSource | TriMesh | str | os.PathLike[str]) -> MeshSource:

@@ -9,7 +9,7 @@ from . import _kernels_cells as kernels
 from .bounds import deviation
 from .codec import Patch, quantise_normals
 from .pieces import Piece, join
-from .simplify import simplify
+from .simplify import incidence, simplify
 
 __all__ = ["CellResult", "CellTask", "SharedNormals", "work"]
 
@@ -104,7 +104,7 @@ class CellResult:
     own_vertices: int = 0
     duplicate: int = 0
     edges: tuple[int, int] = (0, 0)
-    open_edges: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 3), np.int64))
+    open_edges: NDArray[np.int32] = field(default_factory=lambda: np.empty((0, 3), np.int32))
 
 
 def work(task: CellTask) -> CellResult:
@@ -204,32 +204,9 @@ def _patches(
 
 def _count_oddities(whole: Piece, locked: NDArray[np.bool_], result: CellResult) -> None:
     """Duplicate triangles and odd edges; edges between shared vertices are left to be counted together."""
-    count = np.int64(len(whole.ids))
-    ends = whole.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    keys = ends.min(axis=1) * count + ends.max(axis=1)
-    edges, uses = np.unique(keys, return_counts=True)
-    a, b = edges // count, edges % count
-    is_open = locked[a] & locked[b]
-    result.edges = (int((uses[~is_open] == 1).sum()), int((uses[~is_open] > 2).sum()))
-    first, second = whole.ids[a[is_open]], whole.ids[b[is_open]]
-    result.open_edges = np.stack(
-        [np.minimum(first, second), np.maximum(first, second), uses[is_open]], axis=1
-    ).astype(np.int64)
-    # A second triangle on three corners has an edge with at least two triangles: look only there.
-    suspects = (uses > 2)[np.searchsorted(edges, keys)].reshape(-1, 3).any(axis=1)
-    suspects |= _is_twin_by_neighbour(whole.faces, edges, uses, keys)
-    if suspects.any():
-        corners = np.sort(whole.faces[suspects], axis=1)
-        result.duplicate = len(corners) - len(np.unique(corners, axis=0))
-
-
-def _is_twin_by_neighbour(
-    faces: NDArray[np.int32], edges: NDArray[np.int64], uses: NDArray[np.int64], keys: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """Faces whose three edges all have two faces and the same sum of faces: two back to back."""
-    where = np.searchsorted(edges, keys)
-    number = np.repeat(np.arange(len(faces), dtype=np.int64), 3)
-    sums = np.zeros(len(edges), np.int64)
-    np.add.at(sums, where, number)
-    three = sums[where].reshape(-1, 3)
-    return (three == three[:, :1]).all(axis=1)
+    edges, totals = np.empty((3 * len(whole.faces), 3), np.int32), np.empty(4, np.int64)
+    kernels.odd_edges(whole.faces, *incidence(whole.faces, len(whole.ids)), locked, edges, totals)
+    result.edges = (int(totals[0]), int(totals[1]))
+    result.duplicate = int(totals[2])
+    result.open_edges = edges[: totals[3]].copy()
+    result.open_edges[:, :2] = np.sort(whole.ids[result.open_edges[:, :2]], axis=1)

@@ -268,7 +268,7 @@ class _Tally:
 
     def __init__(self) -> None:
         self.triangles = self.vertices = self.duplicate = self.boundary = self.nonmanifold = 0
-        self.open: list[NDArray[np.int64]] = []
+        self.open: list[NDArray[np.int32]] = []
 
     def add(self, result: CellResult) -> None:
         self.triangles += result.triangles

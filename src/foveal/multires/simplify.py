@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from . import _kernels_simplify as kernels
 
-__all__ = ["Simplified", "incidence", "simplify"]
+__all__ = ["Simplified", "incidence", "neighbours", "simplify"]
 
 #: Weight of the wall that holds an open border in place, relative to a face of the same size.
 BORDER_WEIGHT = 4.0
@@ -32,6 +32,10 @@ class Simplified:
         Which face of the input each face was.
     is_relaxed : bool
         Whether topology had to be given up to come down to the size asked for.
+    typical_error : float
+        Root of the largest mean squared distance that a collapse was let in for: a scale, not a bound.
+    across : (m, 3) int32
+        Of the input, see `neighbours`.
     """
 
     positions: NDArray[np.float64]
@@ -40,6 +44,8 @@ class Simplified:
     kept: NDArray[np.int32]
     origin: NDArray[np.int32]
     is_relaxed: bool
+    typical_error: float
+    across: NDArray[np.int32]
 
 
 def incidence(
@@ -50,6 +56,13 @@ def incidence(
     refs = np.empty(3 * len(faces), np.int32)
     kernels.incidence(faces, starts, counts, refs)
     return starts, counts, refs
+
+
+def neighbours(faces: NDArray[np.int32], count: int, /) -> NDArray[np.int32]:
+    """(m, 3): the face across each edge (k, k + 1) of each face, -1 where there is none."""
+    across, is_border = np.empty((len(faces), 3), np.int32), np.empty(count, np.bool_)
+    kernels.neighbours(faces, *incidence(faces, count), across, is_border)
+    return across
 
 
 def simplify(
@@ -107,7 +120,7 @@ def simplify(
     alive, valence = np.ones(size, np.bool_), counts.copy()
     versions, marks = np.zeros(count, np.int32), np.zeros(count, np.int64)
     slots, heap = np.empty((8 * size + 1024, 3), np.int32), np.empty(8 * size + 1024, np.int64)
-    sizes = np.zeros(2, np.int64)
+    sizes, worst = np.zeros(2, np.int64), np.zeros(1)
     live, end, stamp = size, len(first), 2
     is_relaxed, is_strict, passes = False, True, 0
     while live > target:
@@ -137,6 +150,7 @@ def simplify(
             heap,
             sizes,
             marks,
+            worst,
             stamp,
             live,
             target if is_strict else relaxed_target,
@@ -151,7 +165,7 @@ def simplify(
             is_strict, is_relaxed = False, True
         elif not is_strict and before == live:
             break
-    return _gather(positions, attributes, faces, alive, is_relaxed)
+    return _gather(positions, attributes, faces, alive, is_relaxed, float(worst[0]) ** 0.5, across)
 
 
 def _gather(
@@ -160,6 +174,8 @@ def _gather(
     faces: NDArray[np.int32],
     alive: NDArray[np.bool_],
     is_relaxed: bool,
+    typical_error: float,
+    across: NDArray[np.int32],
 ) -> Simplified:
     origin = np.flatnonzero(alive).astype(np.int32)
     if is_relaxed and len(origin):
@@ -170,7 +186,7 @@ def _gather(
     kept = np.flatnonzero(used).astype(np.int32)
     index = np.cumsum(used, dtype=np.int32) - 1
     return Simplified(
-        positions[kept], attributes[kept], index[left].astype(np.int32), kept, origin, is_relaxed
+        positions[kept], attributes[kept], index[left].astype(np.int32), kept, origin, is_relaxed, typical_error, across
     )
 
 

@@ -207,14 +207,15 @@ def grow(
 ):
     """Grow over all triangles and write down how.
 
-    Scratch, cleared by the caller: done (m), index (n, filled with -1), degree (n), slots (5, s) int32,
+    Scratch, cleared by the caller: done (m), index (n, filled with -1), degree (n), slots (s, 5) int32,
     state (s), slot_of (3 m, filled with -1), stack (s), with s = 3 m + 4. Out: codes and contexts (one a
     step), extra (numbers that belong to codes), order (the given index of each coded vertex), corners
     (a, b, o, n, p and the kind of each coded vertex in coded indices, see `_kernels_geometry.predict`),
     is_edge (n, cleared: the ends of edges coded as boundary).
     Returns (codes, extras, vertices).
     """
-    following, previous, origin, opposite, half_edge = slots[0], slots[1], slots[2], slots[3], slots[4]
+    following, previous, origin, opposite = slots[:, 0], slots[:, 1], slots[:, 2], slots[:, 3]
+    half_edge = slots[:, 4]
     count = extras = vertices = used = top = 0
     kind = FIRST
     for start in range(len(faces)):

@@ -55,10 +55,10 @@ from .layout import (
 def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge, front, state, stack):
     """Fill faces, corners, degree and is_edge; the twin of `_kernels_connectivity.grow`.
 
-    `front` (4, s) int32, `state` (s) zeros and `stack` (s) are scratch, s = 3 m + 4; degree and is_edge
+    `front` (s, 4) int32, `state` (s) zeros and `stack` (s) are scratch, s = 3 m + 4; degree and is_edge
     come cleared. Returns (vertices, a, at), vertices = -1 if the words are no patch.
     """
-    following, previous, origin, opposite = front[0], front[1], front[2], front[3]
+    following, previous, origin, opposite = front[:, 0], front[:, 1], front[:, 2], front[:, 3]
     most, triangles = len(degree), len(faces)
     t = vertices = used = top = 0
     kind = FIRST
@@ -246,17 +246,12 @@ def geometry(words, a, b, at, slots, table_of, shift_of, weights, corners, degre
         s, b, at = _value(context, slots, table_of, shift_of, b, words, at)
         context = ACROSS_AT + scale(size + 16 * (abs(r) + abs(s)))
         q, a, at = _value(context, slots, table_of, shift_of, a, words, at)
-        i, j, k, n0, n1, n2 = frame(cx, cy, cz)
+        k, n0, n1, n2 = frame(cx, cy, cz)
         q += across(n0, n1, n2, r, s)
-        if k == 0:
-            x, y, z = x + q, y + r, z + s
-        elif k == 1:
-            x, y, z = x + s, y + q, z + r
-        else:
-            x, y, z = x + r, y + s, z + q
-        positions[v, 0] = wrap(x)
-        positions[v, 1] = wrap(y)
-        positions[v, 2] = wrap(z)
+        is_x, is_y = k == 0, k == 1
+        positions[v, 0] = wrap(x + (q if is_x else (s if is_y else r)))
+        positions[v, 1] = wrap(y + (r if is_x else (q if is_y else s)))
+        positions[v, 2] = wrap(z + (s if is_x else (r if is_y else q)))
     return a, b, at
 
 

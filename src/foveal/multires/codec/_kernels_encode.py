@@ -51,7 +51,7 @@ def position_events(positions, degree, corners, vertices, weights, contexts, val
                 count += 1
             continue
         x, y, z, cx, cy, cz, size = predict(positions, degree, v, corners[v], weights)
-        i, j, k, n0, n1, n2 = frame(cx, cy, cz)
+        k, n0, n1, n2 = frame(cx, cy, cz)
         rx, ry, rz = positions[v, 0] - x, positions[v, 1] - y, positions[v, 2] - z
         if k == 0:
             r, s, t = ry, rz, rx

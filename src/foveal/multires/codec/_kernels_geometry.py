@@ -67,9 +67,7 @@ def predict(positions, degree, v, corner, weights):
 
     corner = (a, b, o, n, p, kind): v comes with the triangle (b, a, v) on the far side of the edge a -> b
     of the triangle with the opposite vertex o; n is the vertex after b on the front and p the opposite
-    vertex of the edge b -> n. Returns (x, y, z, i, j, k, along, aside, size): the prediction; i, j, k the
-    order of the axes, k across the surface; slopes of the plane as the residual across for one unit of
-    the residuals along i and aside j.
+    vertex of the edge b -> n. Returns (x, y, z, cx, cy, cz, size): the prediction, a normal, a length.
     """
     a, b, o, n, p = corner[0], corner[1], corner[2], corner[3], corner[4]
     kind = settled(corner[5])
@@ -95,18 +93,20 @@ def predict(positions, degree, v, corner, weights):
 
 @kernel
 def frame(cx, cy, cz):
-    """The axis across a surface with normal c (the first with the greatest part), the two others, slopes.
+    """The axis k across a surface with normal c (the first with the greatest part), then i, j after it.
 
-    Returns (i, j, k, along, aside): a step of 1 on axis i in the plane is one of `along` on axis k.
+    Returns (k, u, v, w): the axis, and the normal's parts on axes i, j, k. Written as choices, not
+    branches: which axis it is cannot be foreseen.
     """
-    x, y, z = abs(float(cx)), abs(float(cy)), abs(float(cz))
-    if x >= y and x >= z:
-        i, j, k, u, v, w = 1, 2, 0, float(cy), float(cz), float(cx)
-    elif y >= z:
-        i, j, k, u, v, w = 2, 0, 1, float(cz), float(cx), float(cy)
-    else:
-        i, j, k, u, v, w = 0, 1, 2, float(cx), float(cy), float(cz)
-    return i, j, k, u, v, w
+    fx, fy, fz = float(cx), float(cy), float(cz)
+    x, y, z = abs(fx), abs(fy), abs(fz)
+    is_x = (x >= y) & (x >= z)
+    is_y = (y >= z) & (not is_x)
+    k = 0 if is_x else (1 if is_y else 2)
+    u = fy if is_x else (fz if is_y else fx)
+    v = fz if is_x else (fx if is_y else fy)
+    w = fx if is_x else (fy if is_y else fz)
+    return k, u, v, w
 
 
 @kernel

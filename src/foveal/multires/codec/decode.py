@@ -50,22 +50,23 @@ def decode(
         )
     if len(data) < at + 8 or (len(data) - at) % 2:
         raise FovealError("a patch ends too early. Copy or build the file again.")
-    words = np.frombuffer(data, "<u2", offset=at).astype(np.uint16)
+    words = np.zeros((len(data) - at) // 2 + 1, np.uint16)  # the one at the end is read again past it
+    words[:-1] = np.frombuffer(data, "<u2", offset=at)
     a, b = int(words[0]) | int(words[1]) << 16, int(words[2]) | int(words[3]) << 16
     if a < _LOW or b < _LOW:
         raise FovealError(_DAMAGED)
     slots, table_of, shift_of = tables.slots, tables.table_of, tables.shift_of
     faces = np.empty((m, 3), np.int32)
-    corners = np.empty((n, 6), np.int32)
+    corners = np.empty((n, 6), np.uint32)
     degree = np.zeros(n, np.int32)
     is_edge = np.zeros(n, np.uint8)
-    front = np.empty((4, 3 * m + 4), np.int32)
+    front = np.empty((3 * m + 4, 4), np.int32)
     state = np.zeros(3 * m + 4, np.uint8)
     stack = np.empty(m + 1, np.int32)
     vertices, a, at = _kernels_decode.connectivity(
         words, a, 4, slots, table_of, faces, corners, degree, is_edge, front, state, stack
     )
-    if vertices < 0 or at > len(words):
+    if vertices < 0 or at >= len(words):
         raise FovealError(_DAMAGED)
     positions = np.empty((n, 3), np.int32)
     a, b, at = _kernels_decode.geometry(
@@ -87,7 +88,7 @@ def decode(
         a, b, at = _kernels_decode.colours(
             words, a, b, at, slots, table_of, shift_of, corners, vertices, ycc, colours
         )
-    if a != _LOW or b != _LOW or at != len(words):
+    if a != _LOW or b != _LOW or at != len(words) - 1:
         raise FovealError(_DAMAGED)
     return Patch(positions, faces, normals, colours)
 

@@ -69,7 +69,7 @@ def events(
         positions, grown.degree, grown.corners, used, weights, contexts, values
     )
     at += _kernels_encode.lone_events(positions, used, contexts[at:], values[at:])
-    corners = np.full((n, 6), layout.FIRST, np.int32)
+    corners = np.full((n, 6), layout.FIRST, np.uint32)
     corners[:used] = grown.corners
     if patch.normals is not None:
         index = np.empty(n, np.int32)

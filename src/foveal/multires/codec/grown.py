@@ -25,7 +25,7 @@ class Grown:
         order[i] is the vertex that comes out as vertex i; unused vertices come last.
     vertices : int
         How many of them are used by triangles.
-    corners : (vertices, 6) int32
+    corners : (vertices, 6) uint32
         See `_kernels_geometry.predict`.
     degree : (n,) int32
         Triangles at each vertex, in the new order.
@@ -38,7 +38,7 @@ class Grown:
     extra: NDArray[np.int32]
     order: NDArray[np.int64]
     vertices: int
-    corners: NDArray[np.int32]
+    corners: NDArray[np.uint32]
     degree: NDArray[np.int32]
     is_edge: NDArray[np.uint8]
 
@@ -58,7 +58,7 @@ def grow(patch: Patch, /) -> Grown:
     contexts = np.empty(steps, np.int16)
     extra = np.empty(steps, np.int32)
     coded = np.empty(n + 1, np.int32)
-    corners = np.empty((n + 1, 6), np.int32)
+    corners = np.empty((n + 1, 6), np.uint32)
     is_edge = np.zeros(n, np.uint8)
     degree = np.zeros(n, np.int32)
     index = np.full(n, -1, np.int32)
@@ -68,7 +68,7 @@ def grow(patch: Patch, /) -> Grown:
         np.zeros(m, np.uint8),
         index,
         degree,
-        np.empty((5, slots), np.int32),
+        np.empty((slots, 5), np.int32),
         np.zeros(slots, np.uint8),
         np.full(3 * m, -1, np.int32),
         np.empty(slots, np.int32),
