@@ -29,13 +29,13 @@ def cast(positions, faces, camera, *, shift=(0.0, 0.0)):
     return ids, depths
 
 
-def shade(colour, normal, to_eye, shadow=1.0):
-    """The pixel of a point, in the camera's frame."""
+def shade(colour, normal, facing, shadow=1.0):
+    """The pixel of a point, in the camera's frame; `facing` is the triangle's normal on the eye's side."""
     normal = np.asarray(normal, dtype=float)
-    if normal @ to_eye < 0:
+    if normal @ facing < 0:
         normal = -normal
     key = max(0.0, float(normal @ [-0.35, 0.45, np.sqrt(1 - 0.35**2 - 0.45**2)]))
-    light = 0.08 + 0.17 * (0.5 + 0.5 * normal[1]) + 0.80 * shadow * key
+    light = 0.08 + 0.17 * (0.5 + 0.5 * normal[1]) + 0.90 * shadow * key
     return [int(np.floor(255 * encode(min(1.0, decode(c / 255) * light)) + 0.5)) for c in colour]
 
 

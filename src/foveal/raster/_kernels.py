@@ -12,8 +12,29 @@ from foveal.base.jit import kernel
 
 STEPS = 256  # of one pixel
 HALF = 128
+PLANES = 5  # near, and four far aside
 LIMIT = float(1 << 29)
 NARROW = 12  # up to so many columns testing each pixel is quicker than three divisions (measured: 8 to 16)
+
+
+@kernel
+def side(x, y, depth, plane, near, slope):
+    """How far a point is inside one of the planes near, left, right, bottom, top."""
+    if plane == 0:
+        return depth - near
+    if plane == 1:
+        return slope * depth + x
+    if plane == 2:
+        return slope * depth - x
+    if plane == 3:
+        return slope * depth + y
+    return slope * depth - y
+
+
+@kernel
+def is_inside(x, y, depth, near, slope):
+    """Whether `side` is not negative for any plane: the sign of a sum is exact, so this is the same."""
+    return depth >= near and abs(x) <= slope * depth and abs(y) <= slope * depth
 
 
 @kernel
@@ -29,11 +50,12 @@ def place(x, y, depth, pixels_per_radian, width, height, out):
 
 
 @kernel
-def project(positions, eye, basis, lens, first, last, seen, places, nearness):
+def project(positions, eye, basis, lens, slope, first, last, seen, places, nearness):
     """Vertices to the camera's frame (x right, y up, depth ahead), to places, and to 1 / depth.
 
     The eye is subtracted first: coordinates of any size keep their precision near it. Nearness 0 marks
-    what must be clipped: before the near plane, or too far aside.
+    what must be clipped: before the near plane, or further aside than `slope` times its depth. It is
+    exactly what `clip` cuts off, so an edge is cut in both of its triangles or in neither.
     """
     pixels_per_radian, width, height, near = lens
     for i in range(first, last):
@@ -47,7 +69,8 @@ def project(positions, eye, basis, lens, first, last, seen, places, nearness):
         seen[i, 1] = y
         seen[i, 2] = depth
         nearness[i] = 0.0
-        if depth >= near and place(x, y, depth, pixels_per_radian, width, height, places[i]):
+        if is_inside(x, y, depth, near, slope):
+            place(x, y, depth, pixels_per_radian, width, height, places[i])
             nearness[i] = 1.0 / depth
 
 

@@ -9,37 +9,24 @@ import numpy as np
 
 from foveal.base.jit import kernel
 
-from ._kernels import place
+from ._kernels import PLANES, place, side
 
 MOST_CORNERS = 8  # a triangle cut by five planes
-PLANES = 5
 
 
 @kernel
-def _side(corner, plane, near, slope_x, slope_y):
-    """How far a point is inside one of the planes: near, left, right, bottom, top."""
-    if plane == 0:
-        return corner[2] - near
-    if plane == 1:
-        return slope_x * corner[2] + corner[0]
-    if plane == 2:
-        return slope_x * corner[2] - corner[0]
-    if plane == 3:
-        return slope_y * corner[2] + corner[1]
-    return slope_y * corner[2] - corner[1]
-
-
-@kernel
-def _cut(polygon, count, plane, near, slope_x, slope_y, out):
+def _cut(polygon, count, plane, near, slope, out):
     """The part of a convex polygon inside a plane (Sutherland, Hodgman 1974); returns its corners."""
     kept = 0
     for i in range(count):
         here, there = polygon[i], polygon[(i + 1) % count]
-        d, e = _side(here, plane, near, slope_x, slope_y), _side(there, plane, near, slope_x, slope_y)
-        if d >= 0.0:
+        d = side(here[0], here[1], here[2], plane, near, slope)
+        e = side(there[0], there[1], there[2], plane, near, slope)
+        if d >= 0.0 and kept < MOST_CORNERS:
             out[kept] = here
             kept += 1
-        if (d >= 0.0 and e < 0.0) or (d < 0.0 and e >= 0.0):
+        # A plane meets a convex polygon twice. Rounding may bend one that is all but flat: hence the limit.
+        if ((d >= 0.0 and e < 0.0) or (d < 0.0 and e >= 0.0)) and kept < MOST_CORNERS:
             inner, outer = (here, there) if d >= 0.0 else (there, here)
             t = d / (d - e) if d >= 0.0 else e / (e - d)
             for k in range(3):
@@ -51,20 +38,20 @@ def _cut(polygon, count, plane, near, slope_x, slope_y, out):
 
 
 @kernel
-def clip(clipped, faces, seen, lens, slope_x, slope_y, places, nearness, pieces, names):
+def clip(clipped, faces, seen, lens, slope, places, nearness, pieces, names):
     """Cut faces and split what is left into fans; returns how many pieces there are.
 
     Corners, eight places a face, go to `places` and `nearness`; pieces are triples of corners.
     """
     pixels_per_radian, width, height, near = lens
-    now, later = np.empty((MOST_CORNERS + 1, 3)), np.empty((MOST_CORNERS + 1, 3))
+    now, later = np.empty((MOST_CORNERS, 3)), np.empty((MOST_CORNERS, 3))
     total = 0
     for i in range(len(clipped)):
         for k in range(3):
             now[k] = seen[faces[clipped[i], k]]
         count = 3
         for plane in range(PLANES):
-            count = _cut(now, count, plane, near, slope_x, slope_y, later)
+            count = _cut(now, count, plane, near, slope, later)
             now, later = later, now
         first = MOST_CORNERS * i
         is_sound = True

@@ -93,12 +93,12 @@ def _normal_at(corners, weights, normals, basis):
 
 
 @kernel
-def light_of(x, y, z, to_eye_x, to_eye_y, to_eye_z, shadow):
-    """Steps 1 to 4 of the page, for a unit normal."""
-    if x * to_eye_x + y * to_eye_y + z * to_eye_z < 0.0:
+def light_of(x, y, z, facing_x, facing_y, facing_z, shadow):
+    """Steps 1 to 4 of the page, for a unit normal and the triangle's own, towards the eye."""
+    if x * facing_x + y * facing_y + z * facing_z < 0.0:
         x, y, z = -x, -y, -z
     key = max(0.0, x * -0.35 + y * 0.45 + z * 0.8216081791)
-    return 0.08 + 0.17 * (0.5 + 0.5 * y) + 0.80 * shadow * key
+    return 0.08 + 0.17 * (0.5 + 0.5 * y) + 0.90 * shadow * key
 
 
 @kernel
@@ -121,11 +121,14 @@ def shade(
             has_one = False
             if len(normals) > 0:
                 x, y, z, has_one = _normal_at(corners, weight, normals, basis)
-            if not has_one:
-                x, y, z = _face_normal(seen[corners[0]], seen[corners[1]], seen[corners[2]])
+            fx, fy, fz = _face_normal(seen[corners[0]], seen[corners[1]], seen[corners[2]])
             to_eye_x = -(column + 0.5 - 0.5 * width) / pixels_per_radian
+            if fx * to_eye_x + fy * to_eye_y + fz < 0.0:
+                fx, fy, fz = -fx, -fy, -fz
+            if not has_one:
+                x, y, z = fx, fy, fz
             shadow = shadows[row, column] if len(shadows) > 0 else 1.0
-            light = light_of(x, y, z, to_eye_x, to_eye_y, 1.0, shadow)
+            light = light_of(x, y, z, fx, fy, fz, shadow)
             for k in range(3):
                 colour = plain[k]
                 if len(colours) > 0:

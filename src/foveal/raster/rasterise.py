@@ -93,16 +93,22 @@ class Screen:
         positions = np.require(positions, np.float64, ["C_CONTIGUOUS", "WRITEABLE"])
         self.camera, self.faces = camera, np.require(faces, np.int32, ["C_CONTIGUOUS", "WRITEABLE"])
         self.lens = (camera.pixels_per_radian(), camera.width, camera.height, float(camera.near))
+        self._slope = _GUARD / self.lens[0]
         count = len(positions)
         self.seen = np.empty((count, 3))
         self._places, self._nearness = np.zeros((count, 2), dtype=np.int32), np.empty(count)
-        vertices: tuple[Any, ...] = (positions, camera.position, camera.basis(), self.lens)
+        eye, basis = camera.position, camera.basis()
         placed = (self.seen, self._places, self._nearness)
-        run_all(executor, lambda c: kernels.project(*vertices, *c, *placed), _chunks(count))
 
+        def project(part: tuple[int, int]) -> None:
+            kernels.project(positions, eye, basis, self.lens, self._slope, *part, *placed)
+
+        def find_bands(part: tuple[int, int]) -> None:
+            kernels.find_bands(self.faces, *placed, self.lens, BAND_ROWS, *part, bands)
+
+        run_all(executor, project, _chunks(count))
         bands = np.empty((len(faces), 2), dtype=np.int32)
-        arguments: tuple[Any, ...] = (self.faces, *placed, self.lens, BAND_ROWS)
-        run_all(executor, lambda c: kernels.find_bands(*arguments, *c, bands), _chunks(len(faces)))
+        run_all(executor, find_bands, _chunks(len(faces)))
         self._first, self._entries, clipped = _listed(bands, self.bands)
         self._cut(clipped)
 
@@ -137,9 +143,8 @@ class Screen:
         most = clipping.MOST_CORNERS * len(clipped)
         self._piece_places, self._piece_nearness = np.zeros((most, 2), dtype=np.int32), np.empty(most)
         pieces, names = np.empty((most, 3), dtype=np.int32), np.empty(most, dtype=np.int32)
-        per_pixel = 1 / self.lens[0]
         found = clipping.clip(
-            *(clipped, self.faces, self.seen, self.lens, _GUARD * per_pixel, _GUARD * per_pixel),
+            *(clipped, self.faces, self.seen, self.lens, self._slope),
             *(self._piece_places, self._piece_nearness, pieces, names),
         )
         self._pieces, self._piece_names = pieces[:found], names[:found]
