@@ -11,7 +11,9 @@ An operation is one int32, in the order in which the decoder will meet it:
 Based on: Duda. Asymmetric numeral systems. 2013; Giesen. Interleaved entropy coders. 2014.
 """
 
-from foveal.base.jit import kernel
+import numpy as np
+
+from foveal.base.jit import inlined, kernel
 
 LOW = 1 << 16  # a state lies in [LOW, LOW << 16) between operations
 STATE_B = 1 << 29
@@ -73,29 +75,29 @@ def write(operations, count, frequencies, starts, bits, words):
     return at
 
 
-@kernel
+@inlined
 def symbol(slots, table, x, bits, words, at):
-    """Read a symbol with state x: (symbol, x, at). Words past the end read as 0; the caller compares `at`."""
+    """Read a symbol with state x: (symbol, x, at). The last word, 0, is read again past the end."""
     entry = slots[table, x & ((1 << bits) - 1)]
     x = ((entry >> 8) & 0xFFF) * (x >> bits) + (entry >> 20)
-    if x < LOW:
-        x = x << 16
-        if at < len(words):
-            x |= words[at]
-        at += 1
+    # Not a branch: whether a word is due cannot be foreseen.
+    word = np.int64(words[min(at, len(words) - 1)])
+    is_due = x < LOW
+    x = x << 16 | word if is_due else x
+    at += is_due
     return entry & 0xFF, x, at
 
 
-@kernel
+@inlined
 def raw(n, x, words, at):
     """Read n raw bits, 0 to 16, with state x: (value, x, at)."""
     value = x & ((1 << n) - 1)
     x >>= n
-    if x < LOW:
-        x = x << 16
-        if at < len(words):
-            x |= words[at]
-        at += 1
+    # Not a branch: whether a word is due cannot be foreseen.
+    word = np.int64(words[min(at, len(words) - 1)])
+    is_due = x < LOW
+    x = x << 16 | word if is_due else x
+    at += is_due
     return value, x, at
 
 

@@ -3,7 +3,7 @@
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import inlined, kernel
 
 from .layout import (
     AT_DEAD,
@@ -130,7 +130,7 @@ def pair_edges(positions, faces, order, twin):
         i = j
 
 
-@kernel
+@inlined
 def code_context(head, tail, last, next_dead, previous_dead):
     """Which statistics the next code has, from the degrees so far at both ends of the gate."""
     h = min(max(head, 1), HEAD_DEGREES) - 1
@@ -139,7 +139,7 @@ def code_context(head, tail, last, next_dead, previous_dead):
     return (h * TAIL_DEGREES + min(max(tail, 1), TAIL_DEGREES) - 1) * LAST_CODES + last
 
 
-@kernel
+@inlined
 def kind_after(kind, code):
     """The kind of the newest vertex once the code after it, or the one after that, is known."""
     if kind == FRESH:
@@ -385,7 +385,7 @@ def close_edge(following, previous, state, gate):
     return nxt if state[nxt] == LIVE else -1
 
 
-@kernel
+@inlined
 def link(following, previous, gate, s, nxt, met):
     """Put slot s after the gate; with `met`, a slot of the front, cut the loop there in two (or join two)."""
     following[s] = nxt

@@ -7,7 +7,7 @@ past the end reads as zeros; whoever called compares `at` and the states when al
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import inlined, kernel
 from foveal.coding._kernels_rans import number, raw, symbol
 
 from ._kernels_connectivity import (
@@ -214,7 +214,7 @@ def _step(following, previous, gate, walk):
     return s
 
 
-@kernel
+@inlined
 def _value(context, slots, table_of, shift_of, x, words, at):
     """One value in its context: (value, x, at)."""
     s, x, at = symbol(slots, np.int64(table_of[context]), x, PROBABILITY_BITS, words, at)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import inlined, kernel
 
 from .layout import (
     DEGREES,
@@ -31,7 +31,7 @@ _SMALL = 4096
 _SCALE = _scale_table(_SMALL)
 
 
-@kernel
+@inlined
 def scale(length):
     """The class of a length >= 0: two an octave of length + 1, at most SCALES - 1."""
     more = 0
@@ -42,13 +42,13 @@ def scale(length):
     return min(_SCALE[x] + more, SCALES - 1)
 
 
-@kernel
+@inlined
 def wrap(x):
     """x modulo 2^32, in [-2^31, 2^31)."""
     return ((x + 0x80000000) & 0xFFFFFFFF) - 0x80000000
 
 
-@kernel
+@inlined
 def settled(kind):
     """The kind of a vertex after which nothing came to decide it."""
     if kind == FRESH:
@@ -56,12 +56,12 @@ def settled(kind):
     return FOLLOWED_RIGHT if kind == FRESH_RIGHT else kind
 
 
-@kernel
+@inlined
 def degree_class(degree):
     return min(max(degree - LEAST_DEGREE, 0), DEGREES - 1)
 
 
-@kernel
+@inlined
 def predict(positions, degree, v, corner, weights):
     """Where vertex v is expected, the plane it should lie in, and how large the triangles are here.
 
@@ -91,7 +91,7 @@ def predict(positions, degree, v, corner, weights):
     return x, y, z, cx, cy, cz, size
 
 
-@kernel
+@inlined
 def frame(cx, cy, cz):
     """The axis k across a surface with normal c (the first with the greatest part), then i, j after it.
 
@@ -109,7 +109,7 @@ def frame(cx, cy, cz):
     return k, u, v, w
 
 
-@kernel
+@inlined
 def across(u, v, w, along, aside):
     """How far a plane with normal (u, v, w) leads across for steps along and aside, rounded."""
     if w == 0.0:
