@@ -55,6 +55,8 @@ def detect(path: Path) -> str:
     for start, what, remedy in _STRANGERS:
         if head.lstrip().startswith(start):
             raise FovealError(f"{path}: this looks like {what}, not a mesh. {remedy}.")
+    if suffix == "obj" and _is_text(head) and re.search(rb"(?m)^\s*v[ \t]+[-+.0-9]", head):
+        return "obj"
     if suffix in _OURS and suffix != "stl":
         shown = "text" if _is_text(head) else "binary data"
         raise FovealError(

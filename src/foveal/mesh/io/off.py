@@ -32,9 +32,9 @@ def read_off(path: Path, /) -> tuple[TriMesh, list[str]]:
     word = _WORD.fullmatch(rows[0][0]) if rows else None
     if word is None or word[3] or word[4]:
         raise FovealError(f"{path.name}: this kind of OFF is not read. Convert it to PLY.")
-    first = rows[0][1:] or rows[1]  # the counts may follow on the line of the word
-    start = 1 if rows[0][1:] else 2
+    start = 1 if rows[0][1:] else 2  # the counts may follow on the line of the word
     try:
+        first = rows[0][1:] or rows[1]
         vertices, faces = int(first[0]), int(first[1])
         if min(vertices, faces) < 0:
             raise ValueError
@@ -52,7 +52,9 @@ def read_off(path: Path, /) -> tuple[TriMesh, list[str]]:
 def _mesh(
     name: str, points: list[list[bytes]], polygons: list[list[bytes]], word: "re.Match[bytes]"
 ) -> tuple[TriMesh, list[str]]:
-    width = min(map(len, points), default=0)
+    if not points:
+        raise FovealError(f"{name}: there is no vertex in it. Choose a file with a triangle mesh.")
+    width = min(map(len, points))
     table = _table(name, points, width)
     normals = colours = None
     after = 3
@@ -64,8 +66,6 @@ def _mesh(
         colours = bytes_of_colours(given, 1.0 if is_wide else 255.0)
     triangles, small = _fans(name, polygons)
     notes = [f"{small} faces of fewer than three corners were left out"] if small else []
-    if not len(points):
-        raise FovealError(f"{name}: there is no vertex in it. Choose a file with a triangle mesh.")
     if not len(triangles):
         raise FovealError(
             f"{name}: it holds {len(points)} points and no triangle. Make a surface of the points first."
@@ -75,9 +75,9 @@ def _mesh(
 
 def _table(name: str, points: list[list[bytes]], width: int) -> NDArray[np.float64]:
     try:
-        if points and width < 3:
+        if width < 3:
             raise ValueError
-        return np.array([[float(v) for v in row[:width]] for row in points]).reshape(len(points), -1)
+        return np.array([[float(v) for v in row[:width]] for row in points])
     except ValueError:
         raise FovealError(
             f"{name}: a vertex is not three numbers. The file is damaged; copy it again."
