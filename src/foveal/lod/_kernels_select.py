@@ -97,20 +97,20 @@ def ideal_cut(
     error_px,
     triangle_budget,
     byte_budget,
-    keys,
+    scratch,
     order,
 ):
     """Fill `order` with the nodes to expand were all of them at hand, falling in screen error.
 
     Returns their number and the largest screen error that is left. Stops at the first node that breaks
-    a budget, so that a larger budget gives a longer run of the same sequence.
+    a budget, so that a larger budget gives a longer run of the same sequence. `scratch` is the screen
+    errors of the nodes that were looked at, the heap, and how many parents each node waits for.
     """
     centres, radii, errors = bounds
+    keys, heap, pending = scratch
     eye, pixels_per_radian, near = view
     first_patch, finer, triangles = patches
-    first_parent, _, first_child, children = links
-    pending = np.diff(first_parent)
-    heap = np.empty(len(errors), np.int32)
+    _, _, first_child, children = links
     size, count, worst = 0, 0, 0.0
     shown, held = 0, 0
     keys[0] = np.inf

@@ -156,10 +156,11 @@ def _select(
     byte_limit = math.inf if byte_budget is None else float(byte_budget)
     seen[0] = True  # what stands in node 0 is decided patch by patch
 
-    keys, order = np.empty(count), np.empty(count, dtype=np.int32)
+    keys, heap, pending = np.empty(count), np.empty(count, dtype=np.int32), np.diff(links[0])
+    order = np.empty(count, dtype=np.int32)
     chosen, worst = kernels.ideal_cut(
         *(bounds, view, patches, links, hidden, node_bytes, seen),
-        *(float(error_px), triangle_limit, byte_limit, keys, order),
+        *(float(error_px), triangle_limit, byte_limit, (keys, heap, pending), order),
     )
     order = order[:chosen]
     expanded, wanted = np.zeros(count, dtype=np.bool_), np.empty(chosen, dtype=np.int32)

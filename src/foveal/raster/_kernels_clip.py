@@ -18,19 +18,22 @@ MOST_CORNERS = 8  # a triangle cut by five planes
 def _cut(polygon, count, plane, near, slope, out):
     """The part of a convex polygon inside a plane (Sutherland, Hodgman 1974); returns its corners."""
     kept = 0
-    for i in range(count):
-        here, there = polygon[i], polygon[(i + 1) % count]
-        d = side(here[0], here[1], here[2], plane, near, slope)
-        e = side(there[0], there[1], there[2], plane, near, slope)
+    for here in range(count):
+        there = here + 1 if here + 1 < count else 0
+        d = side(polygon[here, 0], polygon[here, 1], polygon[here, 2], plane, near, slope)
+        e = side(polygon[there, 0], polygon[there, 1], polygon[there, 2], plane, near, slope)
         if d >= 0.0 and kept < MOST_CORNERS:
-            out[kept] = here
+            for k in range(3):
+                out[kept, k] = polygon[here, k]
             kept += 1
         # A plane meets a convex polygon twice. Rounding may bend one that is all but flat: hence the limit.
-        if ((d >= 0.0 and e < 0.0) or (d < 0.0 and e >= 0.0)) and kept < MOST_CORNERS:
-            inner, outer = (here, there) if d >= 0.0 else (there, here)
-            t = d / (d - e) if d >= 0.0 else e / (e - d)
+        if (d >= 0.0) != (e >= 0.0) and kept < MOST_CORNERS:
+            inner, outer = here, there
+            if d < 0.0:
+                inner, outer, d, e = there, here, e, d
+            t = d / (d - e)
             for k in range(3):
-                out[kept, k] = inner[k] + t * (outer[k] - inner[k])
+                out[kept, k] = polygon[inner, k] + t * (polygon[outer, k] - polygon[inner, k])
             if plane == 0:
                 out[kept, 2] = near
             kept += 1
@@ -48,7 +51,8 @@ def clip(clipped, faces, seen, lens, slope, places, nearness, pieces, names):
     total = 0
     for i in range(len(clipped)):
         for k in range(3):
-            now[k] = seen[faces[clipped[i], k]]
+            for j in range(3):
+                now[k, j] = seen[faces[clipped[i], k], j]
         count = 3
         for plane in range(PLANES):
             count = _cut(now, count, plane, near, slope, later)
@@ -56,7 +60,7 @@ def clip(clipped, faces, seen, lens, slope, places, nearness, pieces, names):
         first = MOST_CORNERS * i
         is_sound = True
         for k in range(count):
-            x, y, depth = now[k]
+            x, y, depth = now[k, 0], now[k, 1], now[k, 2]
             is_sound = is_sound and place(x, y, depth, pixels_per_radian, width, height, places[first + k])
             nearness[first + k] = 1.0 / depth
         for k in range(1, count - 1):
