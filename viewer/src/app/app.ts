@@ -1,4 +1,5 @@
 /** The page: scene and tools put together. */
+import type { Problem } from "../format/problem";
 import { defaultBudgets, deviceHints } from "../scene/device";
 import { UP } from "../scene/frame";
 import { Stage } from "../scene/stage";
@@ -38,8 +39,11 @@ export class App {
   #lostStrip: HTMLElement | undefined;
   #frames = 0;
   #firstPicture: (() => void) | undefined;
-  readonly firstPicture = new Promise<void>((resolve) => {
+  #noPicture: ((problem: Problem) => void) | undefined;
+  /** Settles with the first picture; fails if there can be none. */
+  readonly firstPicture = new Promise<void>((resolve, reject) => {
     this.#firstPicture = resolve;
+    this.#noPicture = reject;
   });
 
   /** @throws Problem if the browser has no WebGL2. */
@@ -59,7 +63,7 @@ export class App {
       pool: new DecoderPool(makeWorker, DecoderPool.sizeFor(navigator.hardwareConcurrency)),
       budgetBytes: budgets.bytes,
       onChange: () => this.stage.invalidate(),
-      onProblem: (problem) => showWarning(problem.message, () => this.#streamer.retry()),
+      onProblem: (problem, { node }) => this.#onProblem(problem, node),
     });
     this.#status = new StatusLine(() => this.change({ isStatusOn: false }));
     this.#tools = makeTools(this);
@@ -106,6 +110,7 @@ export class App {
     const triangles = assets.reduce((sum, { info }) => sum + info.triangles, 0);
     byId("subtitle").textContent = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
     this.#makeViews();
+    this.#toolbar.update();
     if (assets.some(({ source }) => source.whole)) note(WORDS.wholeFile);
     this.stage.invalidate();
   }
@@ -244,7 +249,7 @@ export class App {
       },
       tool: (letter) => {
         const tool = this.#tools.find(({ key }) => key === letter);
-        tool?.run();
+        if (!tool?.isDisabled?.()) tool?.run();
         return tool !== undefined;
       },
     });
@@ -280,6 +285,13 @@ export class App {
     const progress = byId("progress");
     if (stage.layers.length) progress.hidden = stage.isIdle;
     if (stage.isIdle) this.#rememberSoon();
+  }
+
+  /** Without its first node an asset cannot be shown at all; without any other it is only coarser. */
+  #onProblem(problem: Problem, node: number): void {
+    const isFatal = node === 0 && this.stage.moments.firstPicture === undefined;
+    if (isFatal) this.#noPicture?.(problem);
+    else showWarning(problem.message, () => this.#streamer.retry());
   }
 
   #onLost(): void {

@@ -1,6 +1,7 @@
 /** The small print: what is drawn, what was loaded, how exact, how fast. */
-import { icon } from "./icons";
+
 import { byId, make } from "./dom";
+import { icon } from "./icons";
 import { WORDS } from "./words";
 
 export interface Figures {

@@ -10,6 +10,8 @@ export interface Tool {
   readonly run: () => void;
   /** For what is on or off. */
   readonly isPressed?: () => boolean;
+  /** For what this scene does not have; it stays reachable, and says so. */
+  readonly isDisabled?: () => boolean;
   /** Short text over the icon, such as the axis. */
   readonly badge?: () => string;
   /** Name that changes with the state. */
@@ -39,7 +41,9 @@ export class Toolbar {
   /** Bring pressed states, names and badges up to date. */
   update(): void {
     for (const [tool, button] of this.#buttons) {
-      if (tool.isPressed) button.setAttribute("aria-pressed", String(tool.isPressed()));
+      const isDisabled = tool.isDisabled?.() ?? false;
+      if (tool.isPressed) button.setAttribute("aria-pressed", String(!isDisabled && tool.isPressed()));
+      if (tool.isDisabled) button.setAttribute("aria-disabled", String(isDisabled));
       const name = tool.label?.() ?? tool.name;
       button.setAttribute("aria-label", name);
       button.querySelector(".tip")?.replaceChildren(name, make("kbd", {}, tool.key));
@@ -53,7 +57,9 @@ export class Toolbar {
     const button = make("button", { type: "button", class: className }, icon(tool.icon), tip);
     button.dataset.tool = tool.icon;
     button.setAttribute("aria-keyshortcuts", tool.key);
-    button.addEventListener("click", tool.run);
+    button.addEventListener("click", () => {
+      if (!tool.isDisabled?.()) tool.run();
+    });
     return button;
   }
 

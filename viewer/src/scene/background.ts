@@ -1,5 +1,5 @@
 /** What is behind the scene: a soft gradient, drawn so that screenshots have it too. */
-import { BufferAttribute, BufferGeometry, Mesh, RawShaderMaterial, GLSL3, Vector3 } from "three";
+import { BufferAttribute, BufferGeometry, GLSL3, Mesh, RawShaderMaterial, Vector3 } from "three";
 
 /** sRGB, middle and corners of the picture, as `#rrggbb`. */
 export interface BackgroundColours {

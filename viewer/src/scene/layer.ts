@@ -1,6 +1,6 @@
 /** One asset in the scene: its selection, its patches on the GPU, and what of them shows. */
 import { BufferAttribute, BufferGeometry, Group, type Material, Mesh, Sphere, Vector3 } from "three";
-import { type SelectOptions, Selection } from "../select/cut";
+import { Selection, type SelectOptions } from "../select/cut";
 import type { View } from "../select/screenError";
 import type { Asset } from "../stream/asset";
 import type { PackedPatch } from "../stream/pack";

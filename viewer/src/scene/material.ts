@@ -60,10 +60,10 @@ void main() {
 #ifdef IS_FADING
   fade();
 #endif
-  vec3 flatNormal = normalize(cross(dFdx(vPosition), dFdy(vPosition)));
-  vec3 normal = length(vNormal) < 1e-3 ? flatNormal : normalize(vNormal);
+  vec3 facing = normalize(cross(dFdx(vPosition), dFdy(vPosition))); // always on the side of the eye
+  vec3 normal = length(vNormal) < 1e-3 ? facing : normalize(vNormal);
   vec3 srgb = hasTint ? tint : hasColours ? vSrgb : plaster;
-  pixel = vec4(shade(srgb, normal, normalize(-vPosition)), 1.0);
+  pixel = vec4(shade(srgb, normal, facing), 1.0);
 }
 `;
 
@@ -103,7 +103,7 @@ export function makeUniforms() {
     tint: { value: new Vector3(1, 1, 1) },
     plaster: { value: new Vector3(...PLASTER.map((c) => c / 255)) },
     band: { value: new Vector2(0, 1) },
-    ink: { value: [0, 0, 0, 0.4] },
+    ink: { value: [0, 0, 0, 0.25] },
     far: { value: 1 },
   };
 }
@@ -121,13 +121,9 @@ export interface PatchMaterials {
 export function makeMaterials(): PatchMaterials {
   const uniforms = makeUniforms();
   const base = { glslVersion: GLSL3, uniforms, vertexShader: VERTEX, side: DoubleSide };
-  const surface = {
-    ...base,
-    fragmentShader: FRAGMENT,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  };
+  // With lines over them surfaces step back a little. Not else: on steep faces the step is large, and at a
+  // silhouette the far side would show through as dots.
+  const surface = { ...base, fragmentShader: FRAGMENT, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
   return {
     solid: new ShaderMaterial(surface),
     fading: new ShaderMaterial({ ...surface, defines: { IS_FADING: 1 } }),

@@ -8,11 +8,15 @@ export const PLASTER: Rgb = [214, 208, 198];
 const KEY: Vector = [-0.35, 0.45, Math.sqrt(1 - 0.35 ** 2 - 0.45 ** 2)];
 const AMBIENT = 0.08;
 const FILL = 0.17;
-const KEY_STRENGTH = 0.8;
+const KEY_STRENGTH = 0.9;
 
-/** The pixel of a point with this sRGB colour, unit normal and unit direction to the eye, in the camera's frame. */
-export function shade(colour: Rgb, normal: Vector, toEye: Vector, shadow = 1): Rgb {
-  const side = dot(normal, toEye) < 0 ? -1 : 1;
+/**
+ * The pixel of a point with this sRGB colour and unit normal, in the camera's frame.
+ *
+ * @param facing - The triangle's own normal, on the side of the eye.
+ */
+export function shade(colour: Rgb, normal: Vector, facing: Vector, shadow = 1): Rgb {
+  const side = dot(normal, facing) < 0 ? -1 : 1;
   const key = Math.max(0, side * dot(normal, KEY));
   const fill = 0.5 + 0.5 * side * normal[1];
   const light = AMBIENT + FILL * fill + KEY_STRENGTH * shadow * key;
@@ -32,7 +36,7 @@ export function encode(x: number): number {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055;
 }
 
-/** GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 toEye)`, all from 0 to 1. */
+/** GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 facing)`, colours from 0 to 1. */
 export const SHADE_GLSL = /* glsl */ `
 vec3 decodeSrgb(vec3 c) {
   return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, vec3(lessThanEqual(c, vec3(0.04045))));
@@ -40,8 +44,8 @@ vec3 decodeSrgb(vec3 c) {
 vec3 encodeSrgb(vec3 x) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, vec3(lessThanEqual(x, vec3(0.0031308))));
 }
-vec3 shade(vec3 srgb, vec3 normal, vec3 toEye) {
-  vec3 n = dot(normal, toEye) < 0.0 ? -normal : normal;
+vec3 shade(vec3 srgb, vec3 normal, vec3 facing) {
+  vec3 n = dot(normal, facing) < 0.0 ? -normal : normal;
   float key = max(0.0, dot(n, vec3(${KEY.map((x) => x.toFixed(8)).join(", ")})));
   float fill = 0.5 + 0.5 * n.y;
   float light = ${AMBIENT} + ${FILL} * fill + ${KEY_STRENGTH} * key;

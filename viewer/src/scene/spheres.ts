@@ -1,14 +1,14 @@
-/** Bounding spheres of the nodes in the cut, as three circles each. */
+/** Bounding spheres of the finest nodes in the cut, as three circles each. */
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
-import type { Layer } from "./layer";
 import { toFrame } from "./frame";
+import type { Layer } from "./layer";
 
 const SIDES = 48;
 
 export class SphereLines {
   readonly lines = new LineSegments(
     new BufferGeometry(),
-    new LineBasicMaterial({ color: 0xd08a3c, transparent: true, opacity: 0.55 }),
+    new LineBasicMaterial({ color: 0xd08a3c, transparent: true, opacity: 0.4 }),
   );
 
   constructor() {
@@ -16,13 +16,13 @@ export class SphereLines {
     this.lines.visible = false;
   }
 
-  /** Draw the spheres of the expanded nodes of these layers. */
+  /** Draw the spheres of what these layers show. */
   update(layers: readonly Layer[]): void {
     const points: number[] = [];
     for (const layer of layers) {
       const { graph, info } = layer.asset;
       for (let node = 0; node < graph.nodes; node++) {
-        if (!layer.selection.expanded[node]) continue;
+        if (!isLeaf(layer, node)) continue;
         const [x, y, z, radius] = graph.spheres.subarray(4 * node, 4 * node + 4) as unknown as [
           number,
           number,
@@ -38,6 +38,17 @@ export class SphereLines {
     this.lines.geometry = new BufferGeometry();
     this.lines.geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
   }
+}
+
+/** Whether the node is in the cut and nothing finer takes the place of any of its patches. */
+function isLeaf(layer: Layer, node: number): boolean {
+  const { firstPatch, finer } = layer.asset.graph;
+  const { expanded } = layer.selection;
+  if (!expanded[node]) return false;
+  for (let patch = firstPatch[node]!; patch < firstPatch[node + 1]!; patch++) {
+    if (finer[patch]! >= 0 && expanded[finer[patch]!]) return false;
+  }
+  return true;
 }
 
 function addCircles(points: number[], centre: readonly [number, number, number], radius: number): void {

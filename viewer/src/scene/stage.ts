@@ -8,7 +8,7 @@ import type { NodeAt, Streamer } from "../stream/streamer";
 import { ErrorTarget } from "./adapt";
 import { Background, type BackgroundColours } from "./background";
 import { MAX_PIXEL_RATIO } from "./device";
-import { frameOf, type Frame } from "./frame";
+import { type Frame, frameOf } from "./frame";
 import { Layer } from "./layer";
 import { makeMaterials } from "./material";
 import { type CameraState, Navigation } from "./navigation";
@@ -142,6 +142,8 @@ export class Stage {
 
   set isWireframe(isOn: boolean) {
     this.#isWireframe = isOn;
+    this.#materials.solid.polygonOffset = isOn;
+    this.#materials.fading.polygonOffset = isOn;
     this.invalidate();
   }
 

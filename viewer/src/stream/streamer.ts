@@ -5,6 +5,7 @@ import { ByteCache } from "./cache";
 import type { PackedPatch } from "./pack";
 import { ChecksumError, type DecoderPool } from "./pool";
 import { RequestQueue, type Want } from "./queue";
+import { Passing } from "./source";
 
 /** A node of one of the assets. */
 export interface NodeAt {
@@ -23,8 +24,8 @@ export interface StreamerOptions {
   readonly budgetBytes: number;
   /** Something arrived or failed: a new frame may look different. */
   readonly onChange: () => void;
-  /** A sentence for the visitor. */
-  readonly onProblem: (problem: Problem) => void;
+  /** A sentence for the visitor, and the node that cannot be had. */
+  readonly onProblem: (problem: Problem, at: NodeAt) => void;
 }
 
 export class Streamer {
@@ -194,12 +195,15 @@ export class Streamer {
       this.#failed.set(key, Infinity);
       this.#wanted.delete(key);
       const { name } = this.#assets[asset]!.asset.source;
-      const isProblem = error instanceof Problem;
-      const kind = isProblem ? error.kind : error instanceof ChecksumError ? "damaged" : "network";
-      const why = error instanceof ChecksumError ? `a part of ${name} arrives damaged` : sentenceOf(error);
-      const sentence = isProblem ? why : `Some detail is missing: ${why} The rest is shown.`;
-      this.options.onProblem(new Problem(kind, sentence));
+      const problem = error instanceof Problem ? error : this.#describe(error, name);
+      this.options.onProblem(problem, this.#nodeOf(key));
     }
     this.options.onChange();
+  }
+
+  #describe(error: unknown, name: string): Problem {
+    if (error instanceof Passing) return new Problem("network", error.message);
+    const why = error instanceof ChecksumError ? "a checksum does not agree." : sentenceOf(error);
+    return new Problem("damaged", `A part of ${name} cannot be shown: ${why}`);
   }
 }
