@@ -75,7 +75,9 @@ def _camera(camera: Camera) -> dict:
 def main() -> None:
     rng = np.random.default_rng(20051023)
     graphs = [
-        random_model(seed, atoms=atoms, leaves=leaves, zero_errors=seed % 2 == 1).graph
+        random_model(
+            seed, atoms=atoms, leaves=leaves, zero_errors=seed % 2 == 1, error_scale=[1, 30, 100][seed % 3]
+        ).graph
         for seed, (atoms, leaves) in enumerate(SIZES)
     ]
     cases = [_case(i % len(graphs), graphs[i % len(graphs)], rng) for i in range(72)]

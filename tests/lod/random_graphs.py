@@ -35,7 +35,7 @@ def _cells(points, wanted, rng):
     return cells
 
 
-def random_model(seed, *, atoms=120, leaves=16, zero_errors=False):
+def random_model(seed, *, atoms=120, leaves=16, zero_errors=False, error_scale=1.0):
     """Node (level, cell) shows the level's surface in its cell, in patches cut by the finer partition."""
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(atoms, 3)) * [3, 1, 2]
@@ -70,7 +70,7 @@ def random_model(seed, *, atoms=120, leaves=16, zero_errors=False):
         away += [np.linalg.norm(centres[c] - centres[node]) + radii[c] for c in children[node]]
         radii[node] = np.nextafter(np.float32(max(away)), np.float32(np.inf)) * np.float32(1.000001)
         below = max((float(errors[c]) for c in children[node]), default=0.0)
-        grown = 0.0 if zero_errors and rng.random() < 0.5 else rng.uniform(0.001, 0.01)
+        grown = 0.0 if zero_errors and rng.random() < 0.5 else rng.uniform(0.001, 0.01) * error_scale
         errors[node] = below * rng.uniform(1, 2.5) + grown
     errors[0] = np.inf
     patches = [patch for node in nodes for patch in node]

@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from foveal.lod import _kernels_select as kernels
 from foveal.lod.graph import Graph
 from foveal.lod.select import cut, cut_by_error
 from foveal.view.camera import Camera
+from foveal.view.project import screen_error
 from lod import naive_select
 from lod.random_graphs import random_model, random_view
 
@@ -72,7 +74,8 @@ def is_closed(graph, expanded):
 @given(seeds, st.sampled_from([-1.0, 0.0, 0.3, 2.0]), st.booleans(), st.booleans(), st.booleans())
 def test_agrees_with_its_slow_twin(seed, error_px, is_culling, has_triangle_budget, has_byte_budget):
     rng = np.random.default_rng(seed)
-    graph = random_model(seed, atoms=50, leaves=int(rng.integers(1, 20)), zero_errors=True).graph
+    leaves, scale = int(rng.integers(1, 20)), float(rng.choice([1, 100]))
+    graph = random_model(seed, atoms=50, leaves=leaves, zero_errors=True, error_scale=scale).graph
     total = int(graph.triangles.sum())
     options = {
         "error_px": error_px,
@@ -184,6 +187,19 @@ def test_a_cut_by_error_leaves_no_error_above_it(seed, error):
     assert is_closed(model.graph, chosen.expanded)
     assert chosen.error_px <= error
     np.testing.assert_array_equal(chosen.expanded, model.graph.errors > error)
+
+
+@few
+@given(seeds)
+def test_screen_error_is_that_of_the_view_room(seed):
+    rng = np.random.default_rng(seed)
+    camera = random_view(rng, Camera)
+    centres = camera.position + rng.normal(size=(50, 3))
+    radii = np.linalg.norm(centres - camera.position, axis=1) - rng.uniform(-0.02, 0.2, 50)
+    errors = rng.choice([0.0, 0.1, 2.0], 50)
+    view = (camera.position, camera.pixels_per_radian(), camera.near)
+    found = [kernels.screen_error(e, *c, r, *view) for e, c, r in zip(errors, centres, radii, strict=True)]
+    np.testing.assert_array_equal(found, screen_error(errors, centres, radii, camera))
 
 
 def test_a_column_that_came_read_only_from_a_file_is_fine():

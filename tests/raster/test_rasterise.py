@@ -69,6 +69,20 @@ def test_samples_on_an_edge_belong_to_the_triangle_right_of_it_or_below():
     assert (rows.min(), rows.max(), columns.min(), columns.max()) == (7, 11, 7, 11)
 
 
+def test_a_triangle_whose_corner_alone_is_a_sample_covers_it_if_it_is_the_upper_left_one():
+    corner = np.array([-0.5, 0.5, 0])
+    for right, down, is_seen in (
+        (0.4, -0.4, True),
+        (-0.4, -0.4, False),
+        (0.4, 0.4, False),
+        (-0.4, 0.4, False),
+    ):
+        seen = draw(
+            [corner, corner + np.array([right, 0, 0]), corner + np.array([0, down, 0])], [[0, 1, 2]], ahead()
+        ).face_ids
+        assert (seen >= 0).sum() == is_seen
+
+
 def test_weights_know_perspective():
     # A strip that recedes: half way across the picture is not half way along it.
     corners = np.array([[-5, -1, 5], [-5, 1, 5], [30, -1, -20], [30, 1, -20]], dtype=float)
