@@ -95,9 +95,8 @@ def _print(output: Path, report: "BuildReport", seconds: float) -> None:
     repairs = report.repairs
     counts = f"{repairs.triangles:,} triangles, {repairs.vertices:,} vertices"
     print(f"{output}: {counts}, in {seconds:.1f} s")
-    print(
-        f"  size         {report.bytes:,} bytes, {8 * report.bytes / max(1, repairs.vertices):.2f} bits a vertex"
-    )
+    bits = 8 * report.bytes / max(1, repairs.vertices)
+    print(f"  size         {report.bytes:,} bytes, {bits:.2f} bits a vertex")
     print(f"  patches      {report.patches:,} in {report.nodes:,} nodes, {len(report.levels)} levels")
     print(f"  grid step    {report.step:.6g}")
     if repairs.nonmanifold_edges or repairs.boundary_edges:

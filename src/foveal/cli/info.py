@@ -63,7 +63,6 @@ def _print_fov(facts: dict[str, Any]) -> None:
 def _print_mesh(facts: dict[str, Any]) -> None:
     _print_common(facts)
     for name, value in facts["topology"].items():
-        if not isinstance(value, (list, dict)):
-            print(
-                f"  {name.replace('_', ' ')}: {value:,}" if isinstance(value, int) else f"  {name}: {value}"
-            )
+        if name not in ("vertices", "triangles"):
+            shown = ("yes" if value else "no") if isinstance(value, bool) else f"{value:,}"
+            print(f"  {name.removeprefix('is_').replace('_', ' '):<22} {shown}")

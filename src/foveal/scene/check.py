@@ -7,6 +7,7 @@ from typing import Any
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
 
+from .prepare import refuse_missing
 from .scene import read_scene
 
 __all__ = ["check"]
@@ -44,13 +45,14 @@ def check(
     FovealError
         If anything is wrong, in a sentence that says what.
     """
-    from foveal import multires
-
     path = Path(source)
+    refuse_missing(path)
     if path.suffix.lower() not in (".fov", ".json"):
         raise FovealError(
             f"{path}: only a .fov or a scene.json can be checked. Look at a mesh with 'foveal info'."
         )
+    from foveal import multires
+
     if path.suffix.lower() == ".fov":
         return {
             "file": str(path),

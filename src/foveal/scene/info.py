@@ -93,7 +93,8 @@ def _fov_info(path: Path) -> dict[str, Any]:
         file.expect("multires", 1)
         header, size = file.header, path.stat().st_size
         _refuse_damage(header, str(path))
-        table = _level_table(file)
+        # The finest level is the original on the grid: no point moves further than half a cell's diagonal.
+        table = _level_table(file, finest=header["step"] * 3**0.5 / 2)
         data_bytes = int(file.lengths[1:].sum())
     origin, step = np.array(header["origin"]), header["step"]
     box = [(origin + step * np.array(corner)).tolist() for corner in header["box"]]
@@ -147,7 +148,7 @@ def _refuse_damage(header: dict[str, Any], name: str) -> None:
         raise FovealError(f"{name}: its header is damaged ({key}). Copy or build it again.")
 
 
-def _level_table(file: Container) -> list[dict[str, Any]]:
+def _level_table(file: Container, *, finest: float) -> list[dict[str, Any]]:
     """The rows of `info`, from chunk 0 as spec/container.md lays it out."""
     nodes, patches = file.header["nodes"], file.header["patches"]
     chunk = file.chunk(0)
@@ -181,7 +182,7 @@ def _level_table(file: Container) -> list[dict[str, Any]]:
                 "nodes": int((levels == level).sum()),
                 "patches": int((of_patch == level).sum()),
                 "triangles": int(triangles[is_shown].sum()),
-                "error": float(errors[levels > level].max(initial=0.0)),
+                "error": float(errors[levels > level].max(initial=finest)),
                 "bytes": int(file.lengths[1:][levels == level].sum()),
             }
         )

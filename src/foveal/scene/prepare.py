@@ -23,7 +23,16 @@ from .scene import Scene, read_scene, scene_of
 if TYPE_CHECKING:
     from foveal.multires import BuildReport
 
-__all__ = ["CACHE_BYTES", "BuildOptions", "build_file", "cache_folder", "load", "prepare", "prepare_mesh"]
+__all__ = [
+    "CACHE_BYTES",
+    "BuildOptions",
+    "build_file",
+    "cache_folder",
+    "load",
+    "prepare",
+    "prepare_mesh",
+    "refuse_missing",
+]
 
 CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
@@ -95,14 +104,15 @@ def build_file(
     if isinstance(source, TriMesh):
         mesh = source_from_mesh(source, up=options.up or "y")
     else:
-        _refuse_missing(Path(source))
+        refuse_missing(Path(source))
         mesh = open_source(source, up=options.up)
     if is_cold():
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     return multires.build(mesh, Path(output), progress=progress, **options.arguments(), **work)
 
 
-def _refuse_missing(path: Path) -> None:
+def refuse_missing(path: Path) -> None:
+    """A sentence where no file is."""
     if path.is_dir():
         raise FovealError(f"{path}: this is a folder; name a mesh file, a .fov or a scene.json.")
     if not path.exists():
@@ -139,7 +149,7 @@ def prepare(
         If the file is missing or cannot be read as what it seems to be.
     """
     path = Path(source)
-    _refuse_missing(path)
+    refuse_missing(path)
     if path.suffix.lower() == ".fov":
         return path
     root = Path(folder) if folder is not None else cache_folder()

@@ -1,0 +1,193 @@
+"""Wrong input: one sentence on stderr, the right exit code, no traceback, no file."""
+
+import json
+import signal
+import sys
+import time
+
+import pytest
+
+from foveal.mesh.io import write_ply
+from foveal.mesh.shapes import bumpy_sphere, icosphere
+
+
+def assert_one_sentence(answer, *parts):
+    assert answer.exit_code == 1
+    assert answer.stdout == ""
+    lines = [line for line in answer.stderr.splitlines() if not line.endswith("...")]
+    assert len(lines) == 1, answer.stderr
+    assert lines[0].startswith("foveal: ")
+    assert "Traceback" not in answer.stderr
+    assert "fault in foveal itself" not in answer.stderr
+    for part in parts:
+        assert part in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "part"),
+    [
+        ("empty.ply", "", "empty.ply"),
+        ("text.ply", "hello", "text.ply"),
+        ("cut.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "cut.ply"),
+        ("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "NaN"),
+        ("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "index.obj"),
+        ("points.obj", "v 0 0 0\nv 1 0 0\n", "points.obj"),
+        ("zip.glb", "PK\3\4" + "x" * 100, "zip.glb"),
+    ],
+)
+def test_a_file_that_is_no_mesh(run, tmp_path, name, content, part):
+    (tmp_path / name).write_text(content)
+    assert_one_sentence(run("build", tmp_path / name, "-o", tmp_path / "out.fov"), part)
+    assert not (tmp_path / "out.fov").exists()
+    assert not list(tmp_path.glob(".*"))
+
+
+@pytest.mark.parametrize("command", ["view", "build", "info", "check", "export", "render", "publish"])
+@pytest.mark.parametrize(("name", "part"), [("none.fov", "no such file"), ("folder.fov", "folder")])
+def test_a_file_that_is_not_there(run, tmp_path, command, name, part):
+    (tmp_path / "folder.fov").mkdir()
+    out = {"build": "out.fov", "export": "out.ply", "render": "out.png", "publish": "out"}
+    more = ["-o", tmp_path / out[command]] if command in out else []
+    answer = run(command, tmp_path / name, *more)
+    assert answer.exit_code == 1
+    if command not in ("view", "publish"):  # where the viewer is not built, they say that first
+        assert_one_sentence(answer, part)
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.fov"]
+
+
+def test_every_prefix_of_a_file_is_refused(run, ball, tmp_path):
+    data = ball.read_bytes()
+    for length in (0, 1, 4, 20, 24, 200, len(data) // 2, len(data) - 1):
+        (tmp_path / "cut.fov").write_bytes(data[:length])
+        assert_one_sentence(run("info", tmp_path / "cut.fov"), "cut.fov")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["biuld", "x"],
+        ["info"],
+        ["info", "a", "b"],
+        ["build", "a.ply", "--bits", "many"],
+        ["build", "a.ply", "--memory", "lots"],
+        ["build", "a.ply", "--memory", "0GB"],
+        ["build", "a.ply", "--workers", "0"],
+        ["build", "a.ply", "--up", "w"],
+        ["render", "a.ply", "-o", "a.png", "--size", "big"],
+        ["export", "a.ply"],
+        ["info", "a.ply", "--nonsense"],
+    ],
+)
+def test_a_wrong_command_line_exits_with_2(run, words):
+    answer = run(*words)
+    assert answer.exit_code == 2
+    assert answer.stdout == ""
+    assert "Traceback" not in answer.stderr
+
+
+def test_a_mistyped_command_is_guessed(run):
+    assert "build" in run("biuld", "x.ply").stderr
+
+
+def test_options_that_exclude_each_other(run, ball_mesh, tmp_path):
+    assert_one_sentence(
+        run("build", ball_mesh, "-o", tmp_path / "a.fov", "--bits", "9", "--step", "1"), "--step"
+    )
+    assert_one_sentence(run("build", ball_mesh, "-o", tmp_path / "a.ply"), ".fov")
+    assert_one_sentence(run("build", ball_mesh, "-o", tmp_path / "a.fov", "--step", "-1"))
+
+
+def test_debug_shows_where(run, tmp_path):
+    assert "Traceback" in run("info", tmp_path / "none.fov", "--debug").stderr
+
+
+def test_a_cluster_that_does_not_answer(run, ball_mesh, tmp_path, monkeypatch):
+    monkeypatch.setattr("distributed.Client", lambda *_, **__: (_ for _ in ()).throw(OSError("nobody")))
+    answer = run("build", ball_mesh, "-o", tmp_path / "a.fov", "--dask", "tcp://127.0.0.1:1")
+    assert_one_sentence(answer, "no cluster answers")
+
+
+def test_no_memory_and_full_disks_are_said(run, ball, monkeypatch):
+    for error, part in (
+        (MemoryError(), "--memory"),
+        (OSError(28, "No space left on device", "/x"), "No space left"),
+    ):
+        monkeypatch.setattr(
+            "foveal.scene.info.info", lambda *_, error=error, **__: (_ for _ in ()).throw(error)
+        )
+        assert_one_sentence(run("info", ball), part)
+
+
+def test_as_a_process(spawn, ball, tmp_path):
+    good = spawn("info", ball, "--json")
+    bad = spawn("info", "none.fov")
+    usage = spawn("nonsense")
+    out, error = good.communicate(timeout=60)
+    assert (good.returncode, error) == (0, "")
+    assert json.loads(out)["kind"] == "multires"
+    out, error = bad.communicate(timeout=60)
+    assert (bad.returncode, out) == (1, "")
+    assert error == "foveal: none.fov: there is no such file.\n"
+    usage.communicate(timeout=60)
+    assert usage.returncode == 2
+
+
+@pytest.fixture
+def interrupted(spawn, tmp_path):
+    """A build of a larger mesh that got a signal when it was under way."""
+    write_ply(bumpy_sphere(6), tmp_path / "large.ply")
+
+    def begin(signal_number):
+        child = spawn("build", "large.ply", "-o", "out/large.fov", "--quiet")
+        deadline = time.monotonic() + 60
+        while not any((tmp_path / "tmp").glob(".foveal-scratch-*")):
+            assert child.poll() is None, child.communicate()
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        time.sleep(0.2)
+        child.send_signal(signal_number)
+        out, error = child.communicate(timeout=60)
+        return child.returncode, out, error
+
+    return begin
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_leaves_nothing(interrupted, tmp_path):
+    code, out, error = interrupted(signal.SIGINT)
+    assert code == 130
+    assert (out, error.strip()) == ("", "")
+    assert not list(tmp_path.glob("out/*"))
+    assert not list(tmp_path.glob("out/.*"))
+    assert not list((tmp_path / "tmp").iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_killed_build_leaves_nothing_whole_and_the_next_one_sweeps(interrupted, run, tmp_path, monkeypatch):
+    code, _, _ = interrupted(signal.SIGKILL)
+    assert code == -signal.SIGKILL
+    assert not (tmp_path / "out" / "large.fov").exists()
+    assert list((tmp_path / "tmp").iterdir())
+    (tmp_path / "out").mkdir(exist_ok=True)
+    (tmp_path / "out" / ".large.fov.999999999.part").write_bytes(b"as a kill while writing leaves it")
+    write_ply(icosphere(2), tmp_path / "small.ply")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
+    assert run("build", tmp_path / "small.ply", "-o", tmp_path / "out" / "large.fov").exit_code == 0
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["large.fov"]
+    assert not list((tmp_path / "tmp").iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_while_serving_is_success(spawn, ball, tmp_path):
+    import urllib.request
+
+    child = spawn("view", ball, "--no-browser", "--port", "0")
+    line = child.stdout.readline()
+    if not line:
+        assert "not built" in child.stderr.read()
+        pytest.skip("the viewer is not built")
+    url = line.split()[0]
+    assert json.load(urllib.request.urlopen(url + "scene.json"))["title"] == "ball"
+    child.send_signal(signal.SIGINT)
+    out, error = child.communicate(timeout=30)
+    assert (child.returncode, out, error) == (0, "", "")
