@@ -7,6 +7,7 @@ from foveal.base.jit import kernel
 
 DECODE_STEPS = 255  # entries of the table of decoded bytes less one
 ENCODE_STEPS = 4095
+KEY_Z = float(np.sqrt(1 - 0.35**2 - 0.45**2))  # of the key light (-0.35, 0.45, KEY_Z)
 
 
 @kernel
@@ -97,7 +98,7 @@ def light_of(x, y, z, facing_x, facing_y, facing_z, shadow):
     """Steps 1 to 4 of the page, for a unit normal and the triangle's own, towards the eye."""
     if x * facing_x + y * facing_y + z * facing_z < 0.0:
         x, y, z = -x, -y, -z
-    key = max(0.0, x * -0.35 + y * 0.45 + z * 0.8216081791)
+    key = max(0.0, x * -0.35 + y * 0.45 + z * KEY_Z)
     return 0.08 + 0.17 * (0.5 + 0.5 * y) + 0.90 * shadow * key
 
 
