@@ -9,8 +9,6 @@ only make it tight. The cuts are along walls: through each edge, halfway between
 
 import math
 
-import numpy as np
-
 from foveal.base.jit import kernel
 
 
@@ -81,42 +79,17 @@ def frames_of(positions, faces, across, normals, out):
 
 
 @kernel
-def squared_to_segment(px, py, pz, ax, ay, az, bx, by, bz):
+def squared_to_edge(x, y, z, positions, a, b):
     """Squared distance from a point to a segment."""
-    ex, ey, ez = bx - ax, by - ay, bz - az
-    dx, dy, dz = px - ax, py - ay, pz - az
-    length = ex * ex + ey * ey + ez * ez
-    s = 0.0
-    if length > 0.0:
-        s = min(1.0, max(0.0, (dx * ex + dy * ey + dz * ez) / length))
-    dx, dy, dz = dx - s * ex, dy - s * ey, dz - s * ez
-    return dx * dx + dy * dy + dz * dz
-
-
-@kernel
-def squared_to_triangle(px, py, pz, positions, a, b, c):
-    """Squared distance from a point to a triangle, degenerate or not."""
     ax, ay, az = positions[a, 0], positions[a, 1], positions[a, 2]
-    bx, by, bz = positions[b, 0], positions[b, 1], positions[b, 2]
-    cx, cy, cz = positions[c, 0], positions[c, 1], positions[c, 2]
-    ux, uy, uz = bx - ax, by - ay, bz - az
-    vx, vy, vz = cx - ax, cy - ay, cz - az
-    wx, wy, wz = px - ax, py - ay, pz - az
-    uu, uv, vv = ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz
-    wu, wv = wx * ux + wy * uy + wz * uz, wx * vx + wy * vy + wz * vz
-    area = uu * vv - uv * uv
-    s, t = vv * wu - uv * wv, uu * wv - uv * wu
-    if area > 0.0 and s >= 0.0 and t >= 0.0 and s + t <= area:
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        height = wx * nx + wy * ny + wz * nz
-        return height * height / (nx * nx + ny * ny + nz * nz)
-    return min(
-        squared_to_segment(px, py, pz, ax, ay, az, bx, by, bz),
-        min(
-            squared_to_segment(px, py, pz, bx, by, bz, cx, cy, cz),
-            squared_to_segment(px, py, pz, cx, cy, cz, ax, ay, az),
-        ),
-    )
+    ex, ey, ez = positions[b, 0] - ax, positions[b, 1] - ay, positions[b, 2] - az
+    dx, dy, dz = x - ax, y - ay, z - az
+    along = dx * ex + dy * ey + dz * ez
+    if along > 0.0:
+        length = ex * ex + ey * ey + ez * ez
+        s = along / length if along < length else 1.0
+        dx, dy, dz = dx - s * ex, dy - s * ey, dz - s * ez
+    return dx * dx + dy * dy + dz * dz
 
 
 @kernel
@@ -126,14 +99,21 @@ def squared_to_face(x, y, z, frames, positions, faces, g):
     Here and below arrays are indexed, not sliced: each slice counts a reference, atomically, and a
     dozen of them for each piece doubled the time.
     """
-    if (
-        frames[g, 4, 0] * x + frames[g, 4, 1] * y + frames[g, 4, 2] * z + frames[g, 4, 3] > 0.0
-        and frames[g, 5, 0] * x + frames[g, 5, 1] * y + frames[g, 5, 2] * z + frames[g, 5, 3] > 0.0
-        and frames[g, 6, 0] * x + frames[g, 6, 1] * y + frames[g, 6, 2] * z + frames[g, 6, 3] > 0.0
-    ):
+    s0 = frames[g, 4, 0] * x + frames[g, 4, 1] * y + frames[g, 4, 2] * z + frames[g, 4, 3]
+    s1 = frames[g, 5, 0] * x + frames[g, 5, 1] * y + frames[g, 5, 2] * z + frames[g, 5, 3]
+    s2 = frames[g, 6, 0] * x + frames[g, 6, 1] * y + frames[g, 6, 2] * z + frames[g, 6, 3]
+    if s0 > 0.0 and s1 > 0.0 and s2 > 0.0:
         height = frames[g, 0, 0] * x + frames[g, 0, 1] * y + frames[g, 0, 2] * z + frames[g, 0, 3]
         return height * height
-    return squared_to_triangle(x, y, z, positions, faces[g, 0], faces[g, 1], faces[g, 2])
+    # Outside: the nearest point is on an edge that the point lies beyond.
+    best = math.inf
+    if s0 <= 0.0:
+        best = squared_to_edge(x, y, z, positions, faces[g, 0], faces[g, 1])
+    if s1 <= 0.0:
+        best = min(best, squared_to_edge(x, y, z, positions, faces[g, 1], faces[g, 2]))
+    if s2 <= 0.0:
+        best = min(best, squared_to_edge(x, y, z, positions, faces[g, 2], faces[g, 0]))
+    return best
 
 
 @kernel
@@ -341,7 +321,8 @@ def measure_closely(
     is_coarse_to_fine,
     enough,
     stack,
-    stack_depth,
+    near,
+    far,
     errors,
 ):
     """Like `measure` for the few triangles that were suspicious: halved until three corners agree on a face.
@@ -350,46 +331,38 @@ def measure_closely(
     far as the farthest corner is from the surface (no bound can be less), or after 64 halvings. What is
     far below the farthest place found so far decides nothing, so that `enough` grows with it.
     """
-    near, far = np.empty(3, np.int64), np.empty(3)
     record = 0.0
     for t in range(len(pending)):
         f = pending_face[t]
         for i in range(3):
             for axis in range(3):
                 stack[0, i, axis] = pending[t, i, axis]
-        stack_depth[0] = 0
-        top = 1
-        halvings = 0
-        guess = start[f]
+            near[0, i], far[0, i] = nearest_face(
+                pending[t, i, 0],
+                pending[t, i, 1],
+                pending[t, i, 2],
+                onto_positions,
+                onto_faces,
+                frames,
+                low,
+                scale,
+                size,
+                starts,
+                refs,
+                start[f] if i == 0 else near[0, i - 1],
+            )
+        top, halvings = 1, 0
         while top > 0:
             top -= 1
-            depth = stack_depth[top]
-            lower = 0.0
+            lower = max(far[top, 0], max(far[top, 1], far[top, 2]))
+            best, upper = near[top, 0], math.inf
             for i in range(3):
-                near[i], far[i] = nearest_face(
-                    stack[top, i, 0],
-                    stack[top, i, 1],
-                    stack[top, i, 2],
-                    onto_positions,
-                    onto_faces,
-                    frames,
-                    low,
-                    scale,
-                    size,
-                    starts,
-                    refs,
-                    guess,
-                )
-                guess = near[i]
-                lower = max(lower, far[i])
-            best, upper = near[0], math.inf
-            for i in range(3):
-                worst = farthest(stack, top, 3, frames, onto_positions, onto_faces, near[i])
+                worst = farthest(stack, top, 3, frames, onto_positions, onto_faces, near[top, i])
                 if worst < upper:
-                    best, upper = near[i], worst
+                    best, upper = near[top, i], worst
             record = max(record, lower)
             fine = max(max(enough * enough, 0.5 * record), 1.21 * lower)
-            if upper <= fine or depth >= 16 or halvings >= 64 or top + 2 > len(stack):
+            if upper <= fine or halvings >= 64 or top + 2 > len(stack):
                 coarse, base = (f, carried[best]) if is_coarse_to_fine else (best, carried[f])
                 errors[coarse] = max(errors[coarse], base + math.sqrt(upper))
                 continue
@@ -405,14 +378,31 @@ def measure_closely(
                 if length > longest:
                     longest, edge = length, i
             j = (edge + 1) % 3
-            for axis in range(3):
-                middle = 0.5 * (stack[top, edge, axis] + stack[top, j, axis])
-                for i in range(3):
+            x = 0.5 * (stack[top, edge, 0] + stack[top, j, 0])
+            y = 0.5 * (stack[top, edge, 1] + stack[top, j, 1])
+            z = 0.5 * (stack[top, edge, 2] + stack[top, j, 2])
+            g, d = nearest_face(
+                x,
+                y,
+                z,
+                onto_positions,
+                onto_faces,
+                frames,
+                low,
+                scale,
+                size,
+                starts,
+                refs,
+                near[top, edge],
+            )
+            for i in range(3):
+                near[top + 1, i], far[top + 1, i] = near[top, i], far[top, i]
+                for axis in range(3):
                     stack[top + 1, i, axis] = stack[top, i, axis]
-                stack[top, j, axis] = middle
-                stack[top + 1, edge, axis] = middle
-            stack_depth[top] = depth + 1
-            stack_depth[top + 1] = depth + 1
+            stack[top, j, 0], stack[top, j, 1], stack[top, j, 2] = x, y, z
+            near[top, j], far[top, j] = g, d
+            stack[top + 1, edge, 0], stack[top + 1, edge, 1], stack[top + 1, edge, 2] = x, y, z
+            near[top + 1, edge], far[top + 1, edge] = g, d
             top += 2
 
 

@@ -31,7 +31,7 @@ def incidence(faces, starts, counts, refs):
         if b != a:
             refs[starts[b] + counts[b]] = f
             counts[b] += 1
-        if c not in (a, b):
+        if c != a and c != b:
             refs[starts[c] + counts[c]] = f
             counts[c] += 1
 
@@ -47,7 +47,10 @@ def neighbours(faces, starts, counts, refs, out, is_border):
         for k in range(3):
             a, b = faces[f, k], faces[f, (k + 1) % 3]
             found = -1
-            for i in range(starts[b], starts[b] + counts[b]):
+            pivot = a if counts[a] < counts[b] else b
+            # A vertex with more faces than any sane one is not searched to its end: time would grow with
+            # the square, and a neighbour that is not found costs no more than a border.
+            for i in range(starts[pivot], starts[pivot] + min(counts[pivot], 2048)):
                 g = refs[i]
                 if g == f:
                     continue
@@ -55,7 +58,7 @@ def neighbours(faces, starts, counts, refs, out, is_border):
                 if (g0 == b and g1 == a) or (g1 == b and g2 == a) or (g2 == b and g0 == a):
                     found = g
                     break
-                if a in (g0, g1, g2):
+                if (g0 == a or g1 == a or g2 == a) and (g0 == b or g1 == b or g2 == b):
                     found = g
             out[f, k] = found
             if found < 0:
@@ -251,7 +254,7 @@ def turns_over(positions, faces, alive, starts, counts, refs, u, v, x, y, z):
         if not alive[f]:
             continue
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        if v in (a, b, c):
+        if a == v or b == v or c == v:
             continue
         if a == u:
             b, c = b, c
@@ -288,7 +291,7 @@ def breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, s
             marks[a] = stamp
             marks[b] = stamp
             marks[c] = stamp
-            if v in (a, b, c):
+            if a == v or b == v or c == v:
                 shared += 1
     marks[u] = 0
     marks[v] = 0
@@ -338,7 +341,7 @@ def merge(faces, alive, starts, counts, refs, end, valence, u, v):
         f = refs[i]
         if not alive[f]:
             continue
-        if v in (faces[f, 0], faces[f, 1], faces[f, 2]):
+        if faces[f, 0] == v or faces[f, 1] == v or faces[f, 2] == v:
             alive[f] = False
             died += 1
             for k in range(3):
@@ -359,6 +362,7 @@ def merge(faces, alive, starts, counts, refs, end, valence, u, v):
     counts[u] = end - begin
     valence[u] = end - begin
     valence[v] = 0
+    counts[v] = 0
     return died, end
 
 

@@ -132,7 +132,8 @@ class _Target:
             is_coarse_to_fine,
             suspicious,
             np.empty((64, 3, 3)),
-            np.empty(64, np.int32),
+            np.empty((64, 3), np.int64),
+            np.empty((64, 3)),
             out,
         )
 
@@ -142,8 +143,8 @@ class _Target:
         """A grid of boxes over the mesh, about two for a face, with the faces that meet each."""
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
         extent = np.maximum(high - low, 1e-6 * max(1.0, float((high - low).max())))
-        corners = self.positions[self.faces]
-        edge = float(np.sqrt(((corners[:, 0] - corners[:, 1]) ** 2).sum(axis=1)).mean()) or 1.0
+        a, b = self.positions[self.faces[::16, 0]], self.positions[self.faces[::16, 1]]
+        edge = float(np.sqrt(((a - b) ** 2).sum(axis=1)).mean()) or 1.0
         width = max(edge, float(extent.max()) / 256)
         size = np.minimum(256, np.ceil(extent / width)).astype(np.int64)
         boxes = int(size.prod())

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from . import _kernels_cells as kernels
 from .bounds import deviation
 from .codec import Patch, quantise_normals
-from .pieces import Piece, join
+from .partition import partition
+from .pieces import Piece, join, local_numbers, split
 from .simplify import incidence, simplify
 
 __all__ = ["CellResult", "CellTask", "SharedNormals", "work"]
@@ -29,7 +30,7 @@ class CellTask:
         door, where the grid is finer.
     offset : float
         How far those positions may be from the original, in steps of the grid.
-    target, relaxed_target : int
+    target, relaxed_above : int
         Triangles wanted, and above which topology is given up; see `simplify`.
     snap : int
         New vertices are put on multiples of so many steps.
@@ -39,6 +40,8 @@ class CellTask:
         What the attributes are.
     is_first : bool
         Whether the pieces come from the door.
+    patch_triangles : int
+        Of which patches of the original resolution have at most twice as many.
     """
 
     pieces: list[Piece]
@@ -46,12 +49,13 @@ class CellTask:
     ratio: float
     offset: float
     target: int
-    relaxed_target: int
+    relaxed_above: int
     snap: int
     normal_bits: int
     has_colours: bool
     has_normals: bool
     is_first: bool
+    patch_triangles: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,8 +118,8 @@ def work(task: CellTask) -> CellResult:
     locked = np.zeros(len(whole.ids), np.bool_)
     for shared, where in zip(task.is_shared, maps, strict=True):
         locked[where] = shared
-    if task.is_first:  # pieces were cut by how the file was read: here they are one patch
-        pieces, maps = [whole], [np.arange(len(whole.ids), dtype=np.int32)]
+    if task.is_first:
+        whole, locked, pieces, maps = _first_patches(whole, locked, task.patch_triangles)
     # Local coordinates: integers in doubles, near zero, so that quadrics do not lose digits.
     middle = (whole.positions.min(axis=0).astype(np.int64) + whole.positions.max(axis=0)) // 2
     middle -= middle % task.snap
@@ -126,7 +130,7 @@ def work(task: CellTask) -> CellResult:
         whole.faces,
         locked,
         target=task.target,
-        relaxed_target=task.relaxed_target,
+        relaxed_above=task.relaxed_above,
         attributes=whole.attributes,
         snap=float(task.snap),
     )
@@ -166,6 +170,19 @@ def _on_grid(piece: Piece, task: CellTask) -> Piece:
     return Piece(
         piece.ids, positions.astype(np.int32), piece.faces, errors.astype(np.float32), piece.attributes
     )
+
+
+def _first_patches(
+    whole: Piece, locked: NDArray[np.bool_], most: int
+) -> tuple[Piece, NDArray[np.bool_], list[Piece], list[NDArray[np.int32]]]:
+    """The cell as one patch, however the file was read; as several if cells had to be joined."""
+    if len(whole.faces) <= 2 * most:
+        return whole, locked, [whole], [np.arange(len(whole.ids), dtype=np.int32)]
+    points = whole.positions.astype(np.float64)[whole.faces].sum(axis=1)
+    pieces = [piece for _, piece in split(whole, partition(points, limit=most, level=0))]
+    again, maps = join(pieces)
+    before, _ = local_numbers(np.concatenate([whole.ids, again.ids]))
+    return again, locked[before[len(whole.ids) :]], pieces, maps
 
 
 def _patches(

@@ -196,7 +196,7 @@ class Levels:
             row.locked += result.locked
             row.error = max(row.error, result.error)
             row.relaxed_cells += result.is_relaxed
-            row.stalled_cells += left > RELAXED * result.triangles and result.triangles > 64
+            row.stalled_cells += left > max(RELAXED * result.triangles, self.settings.root_triangles // row.cells)
             if result.shared is not None:
                 sums.append(result.shared)
             if tally is not None:
@@ -232,6 +232,7 @@ class Levels:
                 settings.has_colours,
                 settings.has_normals,
                 level == 0,
+                settings.cell_triangles,
             )
 
     def _keep(self, content: list[tuple[int, int]], result: CellResult, level: int) -> Node:

@@ -72,7 +72,7 @@ def simplify(
     /,
     *,
     target: int,
-    relaxed_target: int,
+    relaxed_above: int,
     attributes: NDArray[np.float32] | None = None,
     snap: float = 1.0,
 ) -> Simplified:
@@ -88,9 +88,9 @@ def simplify(
         Vertices that neither move nor vanish.
     target : int
         Faces wanted. Closed stays closed, topology stays, no face turns over.
-    relaxed_target : int
-        Should more faces than this be left then, topology is given up to reach it: handles close, small
-        pieces vanish. Locked vertices stay all the same, so even this may not be reached.
+    relaxed_above : int
+        Should more faces than this be left then, topology is given up to reach `target`: handles close,
+        small pieces vanish. Locked vertices stay all the same, so even this may not be reached.
     attributes : (n, k) float32, optional
         Blended along the edges that vanish.
     snap : float
@@ -103,7 +103,7 @@ def simplify(
     >>> grid = np.array([[x, y, 0] for y in range(3) for x in range(3)], float)
     >>> quads = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
     >>> faces = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]).astype(np.int32)
-    >>> len(simplify(grid, faces, np.zeros(9, bool), target=2, relaxed_target=8).faces)
+    >>> len(simplify(grid, faces, np.zeros(9, bool), target=2, relaxed_above=8).faces)
     2
     """
     count, size = len(positions), len(faces)
@@ -124,8 +124,6 @@ def simplify(
     live, end, stamp = size, len(first), 2
     is_relaxed, is_strict, passes = False, True, 0
     while live > target:
-        if not is_strict and live <= relaxed_target:
-            break
         kernels.offer_all(
             positions, faces, alive, across, quadrics, locked, snap, versions, slots, heap, sizes, is_strict
         )
@@ -153,14 +151,14 @@ def simplify(
             worst,
             stamp,
             live,
-            target if is_strict else relaxed_target,
+            target,
             is_strict,
         )
         passes += 1
         # The queue was thrown away because its slots ran out: no reason to give up.
         is_cut_short = sizes[0] > 0
         if is_strict and not is_cut_short and (passes >= PASSES or before - live < size // 100):
-            if live <= relaxed_target:
+            if live <= relaxed_above:
                 break
             is_strict, is_relaxed = False, True
         elif not is_strict and before == live:

@@ -44,7 +44,7 @@ def choose_step(cells: "Cells", fine_step: float, /) -> float:
         local = (whole.positions.astype(np.float64) - middle) / 64.0
         size = len(whole.faces)
         coarse = simplify(
-            local, whole.faces, _border(whole), target=size // 2, relaxed_target=size, snap=1.0 / 64.0
+            local, whole.faces, _border(whole), target=size // 2, relaxed_above=size, snap=1.0 / 64.0
         )
         found = deviation(local, whole.faces, whole.errors, coarse)
         errors.append(float(np.max(found, initial=0.0)) * 64.0)
