@@ -27,7 +27,7 @@ __all__ = ["render"]
 
 def render(
     file: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.png")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.png", help="The picture to write.")],
     camera: Annotated[
         Path | None,
         typer.Option(
