@@ -69,7 +69,7 @@ def picture(
     >>> triangle = TriMesh.of([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> pixels = picture(triangle, Camera.of([0, 0, 3], [0, 0, 0], width=3, height=3))
     >>> pixels[1, 1].tolist(), pixels[0, 0].tolist()
-    ([196, 191, 181, 255], [0, 0, 0, 0])
+    ([205, 199, 189, 255], [0, 0, 0, 0])
     """
     if not 1 <= supersampling <= 8:
         raise ValueError(f"supersampling must be from 1 to 8, got {supersampling}")
