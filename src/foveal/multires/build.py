@@ -17,6 +17,7 @@ from foveal.base.errors import FovealError
 from foveal.base.files import scratch
 from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import ordered_map, thread_count, threads
+from foveal.base.version import __version__
 from foveal.container import create
 from foveal.lod.graph import Graph
 from foveal.mesh.io.blocks import MeshSource
@@ -378,8 +379,6 @@ class _Plan:
 def _header(
     source: MeshSource, intake: Intake, levels: Levels, plan: _Plan, step: float, settings: Settings
 ) -> dict[str, Any]:
-    import foveal
-
     streams: list[dict[str, Any]] = [{"name": "position", "type": "grid3"}]
     if settings.normal_bits:
         streams.append({"name": "normal", "type": "octahedron", "bits": settings.normal_bits})
@@ -392,7 +391,7 @@ def _header(
         row["error"] = float(plan.node_errors[level_of == number].max())
         table.append(row)
     return {
-        "generator": f"foveal {getattr(foveal, '__version__', '')}".strip(),
+        "generator": f"foveal {__version__}",
         "origin": intake.low.tolist(),
         "step": step,
         "box": [plan.low.min(axis=0).tolist(), plan.high.max(axis=0).tolist()],
