@@ -16,7 +16,7 @@ def pack(values, widths, words):
     `words` has one more word than the bits need, so that the last store stays inside.
     """
     held = np.uint64(0)
-    filled = 0
+    filled = np.int64(0)
     at = 0
     for i in range(len(values)):
         width = np.int64(widths[i])
@@ -34,7 +34,7 @@ def pack(values, widths, words):
 @kernel
 def unpack(words, widths, out):
     """Read `widths[i]` bits into `out[i]`; `words` has one word more than the bits need."""
-    bit = 0
+    bit = np.int64(0)
     for i in range(len(widths)):
         word = bit >> 5
         window = np.uint64(words[word]) | (np.uint64(words[word + 1]) << np.uint64(32))
@@ -60,7 +60,7 @@ def signed_classes(values, classes, raw):
 @kernel
 def signed_values(classes, words, out):
     """Inverse of `signed_classes` and `pack` together."""
-    bit = 0
+    bit = np.int64(0)
     for i in range(len(classes)):
         k = np.int64(classes[i])
         if k == 0:
@@ -78,7 +78,7 @@ def vector_classes(values, classes, raw, widths):
     """One class a row and raw bits a component: see `foveal.coding.bits.encode_vectors`."""
     across = values.shape[1]
     for i in range(len(values)):
-        most = 0
+        most = np.int64(0)
         for j in range(across):
             value = np.int64(values[i, j])
             most |= 2 * value if value > 0 else 2 * (-value) - 1 if value < 0 else 0
@@ -97,7 +97,7 @@ def vector_classes(values, classes, raw, widths):
 def vector_values(classes, words, out):
     """Inverse of `vector_classes` and `pack` together."""
     across = out.shape[1]
-    bit = 0
+    bit = np.int64(0)
     for i in range(len(classes)):
         k = np.int64(classes[i])
         half = (1 << k) >> 1

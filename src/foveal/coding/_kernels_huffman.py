@@ -10,7 +10,7 @@ from foveal.base.jit import kernel
 def fill_table(codes, lengths, max_bits, table):
     """table[next max_bits bits of the stream] = symbol * 16 + length of its code."""
     for symbol in range(len(lengths)):
-        length = lengths[symbol]
+        length = np.int64(lengths[symbol])
         if length == 0:
             continue
         for index in range(codes[symbol], 1 << max_bits, 1 << length):
@@ -21,7 +21,7 @@ def fill_table(codes, lengths, max_bits, table):
 def decode(words, max_bits, total_bits, table, out):
     """Fill `out`; False if that takes more than `total_bits` bits."""
     mask = np.uint64((1 << max_bits) - 1)
-    bit = 0
+    bit = np.int64(0)
     count = len(out)
     for i in range(0, count, 2):
         if bit > total_bits:

@@ -63,19 +63,32 @@ def number_words(m, parents, heads, children, codes):
 
 @kernel
 def fill_table(m, symbols, parents, codes, lengths, starts, sizes, table):
-    """Write each word's symbols to table[starts[w] : starts[w] + sizes[w]], last symbol first."""
+    """Write each word's symbols to table[starts[w] : starts[w] + sizes[w]].
+
+    Words of one column differ in their last symbol only, so all but the first copy what is before it.
+    """
     at = 0
-    for s in range(len(codes)):
-        word = codes[s]
-        if word < 0:
-            continue
-        starts[word] = at
-        sizes[word] = lengths[s]
-        at += lengths[s]
-        here = s
-        for k in range(at - 1, starts[word] - 1, -1):
-            table[k] = symbols[here % m]
-            here = parents[here // m]
+    for column in range(len(parents)):
+        kept = -1  # where the sequence of the column's last word begins
+        for rank in range(m):
+            s = column * m + rank
+            word = codes[s]
+            if word < 0:
+                continue
+            size = lengths[s]
+            starts[word] = at
+            sizes[word] = size
+            if kept >= 0:
+                for k in range(size - 1):
+                    table[at + k] = table[kept + k]
+            else:
+                here = parents[column]
+                for k in range(at + size - 2, at - 1, -1):
+                    table[k] = symbols[here % m]
+                    here = parents[here // m]
+            table[at + size - 1] = symbols[rank]
+            kept = at
+            at += size
 
 
 @kernel

@@ -124,8 +124,8 @@ def _walk(
     m = len(faces)
     halves = 3 * m
     twins = np.empty(halves, dtype=np.int32)
-    scratch = np.empty((4, halves), dtype=np.int32)
-    _kernels_topology.pair_edges(faces, *scratch, np.empty(n + 2, np.int32), twins)
+    low, high, edges, spare = np.empty((4, halves), dtype=np.int32)
+    _kernels_topology.pair_edges(faces, low, high, edges, spare, np.empty(n + 2, np.int32), twins)
     ids = np.full(n, -1, dtype=np.int32)
     order = np.empty(n, dtype=np.int32)
     corners = np.empty((n, 3), dtype=np.int32)
