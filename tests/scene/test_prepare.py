@@ -64,6 +64,12 @@ def test_a_changed_file_or_option_is_built_anew(tmp_path, ball, builds):
     assert len(found) == len(builds) == 4
 
 
+def test_changed_code_builds_anew(tmp_path, ball, monkeypatch):
+    first = prepare(ball, folder=tmp_path / "cache")
+    monkeypatch.setattr(module, "_builder", lambda: "another foveal")
+    assert prepare(ball, folder=tmp_path / "cache") != first
+
+
 def test_large_files_are_told_by_their_ends_and_their_time(tmp_path, ball, monkeypatch):
     monkeypatch.setattr(module, "_WHOLE", 100)
     monkeypatch.setattr(module, "_END", 50)

@@ -1,13 +1,14 @@
 """A `.fov` for any file: itself if it is one, else built into the user's cache, where it stays for next time.
 
-The cache is named by what went in: the file's content, the options that change the bytes, and the version
-of foveal. It is kept below a number of bytes by deleting what was not used for longest.
+The cache is named by what went in: the file's content, the options that change the bytes, and the code that
+builds, so that a foveal that changed never meets its older self's files. It is kept below a number of bytes by deleting what was not used for longest.
 """
 
 import hashlib
 import os
 import time
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,6 @@ import platformdirs
 
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
-from foveal.base.version import __version__
 from foveal.mesh.trimesh import TriMesh
 
 from .scene import Scene, read_scene, scene_of
@@ -167,7 +167,7 @@ def prepare_mesh(
     **work: Any,
 ) -> Path:
     """The same for a mesh in memory."""
-    state = hashlib.blake2b(f"{__version__} {asdict(options)}".encode())
+    state = hashlib.blake2b(f"{_builder()} {asdict(options)}".encode())
     for array in (mesh.positions, mesh.faces, mesh.normals, mesh.colours):
         state.update(b"none" if array is None else array.tobytes())
     root = Path(folder) if folder is not None else cache_folder()
@@ -199,6 +199,17 @@ def load(source: str | os.PathLike[str], /, **options: Any) -> Scene:
     return scene_of(built, title=path.name.removesuffix(".gz").rpartition(".")[0] or path.name)
 
 
+@cache
+def _builder() -> str:
+    """A name for the code that makes the bytes: 3 ms, and no room has to be imported for it."""
+    package = Path(__file__).parents[1]
+    state = hashlib.blake2b()
+    for room in ("base", "coding", "container", "mesh", "multires"):
+        for file in sorted((package / room).rglob("*.py")):
+            state.update(file.read_bytes())
+    return state.hexdigest()
+
+
 def _stem(path: Path) -> str:
     name = path.name.removesuffix(".gz").rpartition(".")[0] or path.name
     return "".join(c if c.isalnum() or c in "-_" else "-" for c in name)[:60]
@@ -207,7 +218,7 @@ def _stem(path: Path) -> str:
 def _fingerprint(path: Path, options: BuildOptions) -> str:
     """A name for the content and the options."""
     status = path.stat()
-    state = hashlib.blake2b(f"{__version__} {asdict(options)} {path.suffixes[-2:]}".encode())
+    state = hashlib.blake2b(f"{_builder()} {asdict(options)} {path.suffixes[-2:]}".encode())
     state.update(f"{status.st_size}".encode())
     try:
         with path.open("rb") as stream:
