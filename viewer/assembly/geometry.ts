@@ -5,6 +5,7 @@ import {
   ACROSS_AT,
   ALONG_AT,
   ASIDE_AT,
+  COARSE_AT,
   DEGREES,
   ESCAPE,
   FIRST,
@@ -102,7 +103,7 @@ export function valuePlace(): usize {
 }
 
 /** Fill positions, those of vertices that no triangle uses too. Returns false if the words end too early. */
-export function geometry(used: u32, firstA: u32, firstB: u32, firstPlace: usize): bool {
+export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, firstPlace: usize): bool {
   const slots = memory_.slots;
   const choices = memory_.choices;
   const weights = memory_.weights;
@@ -115,6 +116,7 @@ export function geometry(used: u32, firstA: u32, firstB: u32, firstPlace: usize)
   let stateA = firstA;
   let stateB = firstB;
   let place = firstPlace;
+  let wasCoarse: u32 = 0;
   for (let v: u32 = 0; v < vertices; v++, position += 12, corner += 24) {
     if (place > end) return false;
     let kind: u32 = v < used ? load<u32>(corner, 20) : FIRST;
@@ -162,7 +164,21 @@ export function geometry(used: u32, firstA: u32, firstB: u32, firstPlace: usize)
     let x = ax + ((wb * bx + wo * ox + wn * nx + wp * px + half) >> WEIGHT_BITS);
     let y = ay + ((wb * by + wo * oy + wn * ny + wp * py + half) >> WEIGHT_BITS);
     let z = az + ((wb * bz + wo * oz + wn * nz + wp * pz + half) >> WEIGHT_BITS);
-    const size = absolute(bx) + absolute(by) + absolute(bz) + absolute(ox) + absolute(oy) + absolute(oz);
+    let size = absolute(bx) + absolute(by) + absolute(bz) + absolute(ox) + absolute(oy) + absolute(oz);
+
+    let c: i64 = 0;
+    if (coarse != 0) {
+      const flag = value(COARSE_AT + wasCoarse, stateB, place);
+      stateB = state_;
+      place = place_;
+      wasCoarse = flag != 0 ? 1 : 0;
+      c = flag != 0 ? <i64>coarse : 0;
+      const middle = (<i64>1 << c) >> 1;
+      x = (x + middle) >> c;
+      y = (y + middle) >> c;
+      z = (z + middle) >> c;
+      size >>= c;
+    }
 
     let choice = load<u32>(choices + ((<usize>(ALONG_AT + d * SCALES + scale(size))) << 2));
     let entry = load<u32>(slots + (choice & ~15) + ((<usize>(stateA & SLOT_MASK)) << 2));
@@ -227,9 +243,9 @@ export function geometry(used: u32, firstA: u32, firstB: u32, firstPlace: usize)
     x += select(q, select(s, r, isY), isX);
     y += select(r, select(q, s, isY), isX);
     z += select(s, select(r, q, isY), isX);
-    store<i32>(position, <i32>x);
-    store<i32>(position, <i32>y, 4);
-    store<i32>(position, <i32>z, 8);
+    store<i32>(position, <i32>(x << c));
+    store<i32>(position, <i32>(y << c), 4);
+    store<i32>(position, <i32>(z << c), 8);
   }
   a = stateA;
   b = stateB;

@@ -45,6 +45,9 @@ export const ASIDE_AT: u32 = ALONG_AT + SCALES * DEGREES;
 export const ACROSS_AT: u32 = ASIDE_AT + SCALES * DEGREES;
 export const COLOUR_AT: u32 = ACROSS_AT + SCALES;
 export const NORMAL_AT: u32 = COLOUR_AT + 3 * SMALL_SCALES;
-export const CONTEXTS: u32 = NORMAL_AT + 4 * SMALL_SCALES;
+export const COARSE_AT: u32 = NORMAL_AT + 4 * SMALL_SCALES;
+export const CONTEXTS: u32 = COARSE_AT + 2;
+
+export const MOST_COARSE: u32 = 15;
 
 export const PROBABILITY_BITS: u32 = 11;

@@ -2,7 +2,7 @@
 
 import * as attributes from "./attributes";
 import { a as connectedA, at as connectedAt, connectivity, used } from "./connectivity";
-import { CONTEXTS, PROBABILITY_BITS } from "./layout";
+import { CONTEXTS, MOST_COARSE, PROBABILITY_BITS } from "./layout";
 import { a, at, b, geometry } from "./geometry";
 import * as memory_ from "./memory";
 import { LOW } from "./stream";
@@ -40,14 +40,14 @@ export function slotsOfTable(): u32 {
 }
 
 /** Decode the words that were written to the address that `reservePatch` gave; false if they are no patch. */
-export function decode(hasNormals: bool, hasColours: bool, normalBits: u32): bool {
+export function decode(coarse: u32, hasNormals: bool, hasColours: bool, normalBits: u32): bool {
   const words = memory_.words;
-  if (memory_.wordsEnd < words + 8) return false;
+  if (memory_.wordsEnd < words + 8 || coarse > MOST_COARSE) return false;
   const firstA = load<u32>(words);
   const firstB = load<u32>(words, 4);
   if (firstA < LOW || firstB < LOW) return false;
   if (!connectivity(firstA, words + 8)) return false;
-  if (!geometry(used, connectedA, firstB, connectedAt)) return false;
+  if (!geometry(used, coarse, connectedA, firstB, connectedAt)) return false;
   attributes.begin(a, b, at);
   if (hasNormals && !attributes.normals(normalBits)) return false;
   if (hasColours && !attributes.colours(used)) return false;

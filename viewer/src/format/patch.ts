@@ -55,7 +55,7 @@ interface Decoder {
     normals: boolean,
     colours: boolean,
   ): number;
-  decode(normals: boolean, colours: boolean, normalBits: number): number;
+  decode(coarse: number, normals: boolean, colours: boolean, normalBits: number): number;
   addressOfPositions(): number;
   addressOfFaces(): number;
   addressOfNormals(): number;
@@ -116,7 +116,9 @@ export class PatchDecoder {
   /** @throws Problem with a sentence if the bytes are not a patch. */
   decode(bytes: Uint8Array): DecodedPatch {
     const [n, afterN] = varint(bytes, 0);
-    const [m, start] = varint(bytes, afterN);
+    const [m, afterM] = varint(bytes, afterN);
+    const coarse = bytes[afterM] ?? 0;
+    const start = afterM + 1;
     if (n > this.#limits.vertices || m > this.#limits.triangles) {
       const { vertices, triangles } = this.#limits;
       throw new Problem(
@@ -130,7 +132,7 @@ export class PatchDecoder {
     const place = wasm.reservePatch(n, m, length, this.#hasNormals, this.#hasColours);
     if (place === 0) throw outOfMemory();
     new Uint8Array(wasm.memory.buffer, place, length).set(bytes.subarray(start));
-    if (!wasm.decode(this.#hasNormals, this.#hasColours, this.normalBits))
+    if (!wasm.decode(coarse, this.#hasNormals, this.#hasColours, this.normalBits))
       throw new Problem("damaged", DAMAGED);
     const { buffer } = wasm.memory;
     return {

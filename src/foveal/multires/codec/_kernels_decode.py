@@ -28,6 +28,7 @@ from .layout import (
     AT_DEAD,
     BOUNDARY,
     CODE_AT,
+    COARSE_AT,
     COLOUR_AT,
     END,
     ESCAPE,
@@ -230,8 +231,11 @@ def _value(context, slots, table_of, shift_of, x, words, at):
 
 
 @kernel
-def geometry(words, a, b, at, slots, table_of, shift_of, weights, corners, degree, vertices, positions):
+def geometry(
+    words, a, b, at, slots, table_of, shift_of, weights, coarse, corners, degree, vertices, positions
+):
     """Fill positions, those of vertices that no triangle uses too. Returns (a, b, at)."""
+    was_coarse = 0
     for v in range(len(positions)):
         if v >= vertices or corners[v, 5] == FIRST:
             for axis in range(3):
@@ -240,6 +244,13 @@ def geometry(words, a, b, at, slots, table_of, shift_of, weights, corners, degre
                 positions[v, axis] = wrap(before + ((value >> 1) ^ -(value & 1)))
             continue
         x, y, z, cx, cy, cz, size = predict(positions, degree, v, corners[v], weights)
+        c = 0
+        if coarse > 0:
+            flag, b, at = _value(COARSE_AT + was_coarse, slots, table_of, shift_of, b, words, at)
+            was_coarse = int(flag != 0)
+            c = coarse * was_coarse
+        half = (1 << c) >> 1
+        x, y, z, size = (x + half) >> c, (y + half) >> c, (z + half) >> c, size >> c
         d = degree_class(degree[v])
         r, a, at = _value(ALONG_AT + d * SCALES + scale(size), slots, table_of, shift_of, a, words, at)
         context = ASIDE_AT + d * SCALES + scale(size + 4 * abs(r))
@@ -249,9 +260,9 @@ def geometry(words, a, b, at, slots, table_of, shift_of, weights, corners, degre
         k, n0, n1, n2 = frame(cx, cy, cz)
         q += across(n0, n1, n2, r, s)
         is_x, is_y = k == 0, k == 1
-        positions[v, 0] = wrap(x + (q if is_x else (s if is_y else r)))
-        positions[v, 1] = wrap(y + (r if is_x else (q if is_y else s)))
-        positions[v, 2] = wrap(z + (s if is_x else (r if is_y else q)))
+        positions[v, 0] = wrap((x + (q if is_x else (s if is_y else r))) << c)
+        positions[v, 1] = wrap((y + (r if is_x else (q if is_y else s))) << c)
+        positions[v, 2] = wrap((z + (s if is_x else (r if is_y else q))) << c)
     return a, b, at
 
 

@@ -16,6 +16,7 @@ from .layout import (
     ALONG_AT,
     ASIDE_AT,
     CODE_AT,
+    COARSE_AT,
     COLOUR_AT,
     ESCAPE,
     FIRST,
@@ -39,9 +40,25 @@ def zigzag(x):
 
 
 @kernel
-def position_events(positions, degree, corners, vertices, weights, contexts, values):
-    """Three events a vertex: residuals along, aside, across. The first vertices' are plain differences."""
+def coarse_counts(positions, vertices, counts):
+    """counts[k] = the vertices whose coordinates are all multiples of 2^k."""
+    counts[:] = 0
+    for v in range(vertices):
+        bits = positions[v, 0] | positions[v, 1] | positions[v, 2]
+        k = 0
+        while k < len(counts) and bits & ((1 << k) - 1) == 0:
+            counts[k] += 1
+            k += 1
+
+
+@kernel
+def position_events(positions, degree, corners, vertices, weights, coarse, contexts, values):
+    """Events of a vertex: whether it lies on the patch's coarse grid, residuals along, aside, across.
+
+    Without a coarse grid (0) the first is left out. A component's first vertices are plain differences.
+    """
     count = 0
+    was_coarse = 0
     for v in range(vertices):
         if corners[v, 5] == FIRST:
             for axis in range(3):
@@ -52,7 +69,19 @@ def position_events(positions, degree, corners, vertices, weights, contexts, val
             continue
         x, y, z, cx, cy, cz, size = predict(positions, degree, v, corners[v], weights)
         k, n0, n1, n2 = frame(cx, cy, cz)
-        rx, ry, rz = positions[v, 0] - x, positions[v, 1] - y, positions[v, 2] - z
+        c = 0
+        if coarse > 0:
+            bits = positions[v, 0] | positions[v, 1] | positions[v, 2]
+            is_coarse = int(bits & ((1 << coarse) - 1) == 0)
+            contexts[count] = (COARSE_AT + was_coarse) | STATE_B
+            values[count] = was_coarse = is_coarse
+            count += 1
+            c = coarse * is_coarse
+        half = (1 << c) >> 1
+        rx = (positions[v, 0] >> c) - ((x + half) >> c)
+        ry = (positions[v, 1] >> c) - ((y + half) >> c)
+        rz = (positions[v, 2] >> c) - ((z + half) >> c)
+        size >>= c
         if k == 0:
             r, s, t = ry, rz, rx
         elif k == 1:

@@ -48,7 +48,9 @@ def decode(
             f"a patch of {n} vertices and {m} triangles is larger than a file may hold "
             f"({max_vertices} and {max_triangles}). Copy or build the file again."
         )
-    if len(data) < at + 8 or (len(data) - at) % 2:
+    coarse = data[at] if at < len(data) else 0
+    at += 1
+    if len(data) < at + 8 or (len(data) - at) % 2 or coarse > layout.MOST_COARSE:
         raise FovealError("a patch ends too early. Copy or build the file again.")
     words = np.zeros((len(data) - at) // 2 + 1, np.uint16)  # the one at the end is read again past it
     words[:-1] = np.frombuffer(data, "<u2", offset=at)
@@ -70,7 +72,19 @@ def decode(
         raise FovealError(_DAMAGED)
     positions = np.empty((n, 3), np.int32)
     a, b, at = _kernels_decode.geometry(
-        words, a, b, at, slots, table_of, shift_of, tables.all_weights, corners, degree, vertices, positions
+        words,
+        a,
+        b,
+        at,
+        slots,
+        table_of,
+        shift_of,
+        tables.all_weights,
+        coarse,
+        corners,
+        degree,
+        vertices,
+        positions,
     )
     normals = colours = None
     if has_normals:
@@ -108,4 +122,3 @@ def _varint(data: bytes, at: int) -> tuple[int, int]:
     raise FovealError(_DAMAGED)
 
 
-assert layout.ESCAPE < layout.SYMBOLS

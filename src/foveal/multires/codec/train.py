@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from foveal.coding import rans
 
 from . import _kernels_train, layout
-from .encode import events
+from .encode import coarse_grid, events
 from .grown import Grown, grow
 from .patch import Patch
 from .tables import Tables
@@ -20,7 +20,8 @@ _POOLS = (
     (layout.ALONG_AT, layout.ACROSS_AT, 12),
     (layout.ACROSS_AT, layout.COLOUR_AT, 8),
     (layout.COLOUR_AT, layout.NORMAL_AT, 8),
-    (layout.NORMAL_AT, layout.CONTEXTS, 8),
+    (layout.NORMAL_AT, layout.COARSE_AT, 8),
+    (layout.COARSE_AT, layout.CONTEXTS, 2),
 )
 _CODE_TABLES = 16
 _ROUNDS = 12  # of clustering; it settles in fewer
@@ -38,7 +39,9 @@ def train(patches: Iterable[Patch], /, *, normal_bits: int = 10) -> Tables:
     blank = Tables(normal_bits, weights, *_no_contexts(), np.zeros((1, layout.SYMBOLS), np.int32))
     counts = np.zeros((layout.CONTEXTS, layout.SYMBOLS), np.int64)
     shift_of = np.zeros(layout.CONTEXTS, np.uint8)
-    coded = [events(patch, grown, blank.all_weights, normal_bits) for patch, grown in pairs]
+    coded = [
+        events(patch, grown, coarse_grid(patch), blank.all_weights, normal_bits) for patch, grown in pairs
+    ]
     sums = np.zeros((layout.CONTEXTS, 2), np.int64)
     for contexts, values in coded:
         _kernels_train.magnitudes(contexts, values, sums)
