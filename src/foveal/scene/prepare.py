@@ -1,8 +1,8 @@
 """A `.fov` for any file: itself if it is one, else built into the user's cache, where it stays for next time.
 
 The cache is named by what went in: the file's content, the options that change the bytes, and the code that
-builds, so that a foveal that changed never meets its older self's files. It is kept below a number of bytes by
-deleting what was not used for longest.
+builds, so that a foveal that changed never meets its older self's files. It is kept below a number of bytes
+by deleting what was not used for longest.
 """
 
 import hashlib

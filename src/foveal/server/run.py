@@ -172,11 +172,11 @@ def serve(
     """
     server, listener, url = _prepare(scene, host, port, {"viewer": viewer})
     is_wanted = can_open_browser() if open_browser is None else open_browser
-    # The socket listens already: what the browser asks before the loop runs waits in its queue.
-    announce(url)
-    if is_wanted:
-        threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
     try:
+        # The socket listens already: what the browser asks before the loop runs waits in its queue.
+        announce(url)
+        if is_wanted:
+            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
         server.run([listener])
     except KeyboardInterrupt:
         pass
