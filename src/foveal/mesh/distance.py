@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """Distances between points and surfaces, and between two surfaces."""
 
 import numpy as np

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """Normals of vertices, from the triangles around them."""
 
 from typing import Any

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """How a mesh hangs together: what is shared, open, doubled or left over."""
 
 from dataclasses import dataclass

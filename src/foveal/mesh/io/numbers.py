@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """ASCII numbers by the block: the kernel reads nearly all, Python's `float` the few it leaves."""
 
 import numpy as np

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """The lines of an OBJ file as arrays, chunk by chunk."""
 
 from collections.abc import Generator

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """PLY, ascii and binary, block by block: polygons, tristrips, colours, normals, anything beside them."""
 
 from collections.abc import Iterator

@@ -1,4 +1,3 @@
-# mypy: allow-untyped-calls
 """STL, ascii and binary, block by block. Every triangle has three vertices of its own."""
 
 import re
