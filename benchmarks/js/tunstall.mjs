@@ -42,26 +42,44 @@ export function buildTunstall(frequencies, wordBits) {
 
 function fillTable(symbols, columns, parents, heads, lengths) {
   const m = symbols.length;
-  const starts = [];
-  const sizes = [];
+  let words = 0;
   let size = 0;
-  for (let s = 0; s < columns * m; s++) {
-    if (Math.floor(s / m) >= heads[s % m]) size += lengths[s];
-  }
-  const table = new Uint8Array(size + 8);
-  let at = 0;
-  for (let s = 0; s < columns * m; s++) {
-    if (Math.floor(s / m) < heads[s % m]) continue; // expanded, so no word
-    starts.push(at);
-    sizes.push(lengths[s]);
-    at += lengths[s];
-    for (let k = at - 1, here = s; k >= at - lengths[s]; k--) {
-      table[k] = symbols[here % m];
-      here = parents[Math.floor(here / m)];
+  for (let column = 0; column < columns; column++) {
+    for (let rank = 0; rank < m; rank++) {
+      if (column < heads[rank]) continue; // expanded, so no word
+      words++;
+      size += lengths[column * m + rank];
     }
   }
-  const longest = sizes.reduce((a, b) => Math.max(a, b), 0);
-  return { starts: Int32Array.from(starts), sizes: Int32Array.from(sizes), table, longest };
+  const starts = new Int32Array(words);
+  const sizes = new Int32Array(words);
+  const table = new Uint8Array(size + 8);
+  let longest = 0;
+  let word = 0;
+  let at = 0;
+  for (let column = 0; column < columns; column++) {
+    let kept = -1; // where the sequence of the column's last word begins
+    for (let rank = 0; rank < m; rank++) {
+      if (column < heads[rank]) continue;
+      const length = lengths[column * m + rank];
+      starts[word] = at;
+      sizes[word++] = length;
+      if (length > longest) longest = length;
+      if (kept >= 0) {
+        table.copyWithin(at, kept, kept + length - 1);
+      } else {
+        let here = parents[column];
+        for (let k = at + length - 2; k >= at; k--) {
+          table[k] = symbols[here % m];
+          here = parents[(here / m) | 0];
+        }
+      }
+      table[at + length - 1] = symbols[rank];
+      kept = at;
+      at += length;
+    }
+  }
+  return { starts, sizes, table, longest };
 }
 
 /** Fill `out` from `bytes`; throws a RangeError where they end too early or name a word that is not there. */

@@ -78,6 +78,7 @@ triangles = st.integers(1, 12).flatmap(
 )
 
 
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # NumPy says so, kernels wrap
 @given(triangles, st.booleans(), st.sampled_from(["vertex", "component"]), st.integers(0, 2**32))
 @settings(deadline=None, max_examples=200)
 def test_any_triangles_and_any_numbers_come_back(mesh, may_delay, classes, seed):
@@ -142,6 +143,7 @@ def test_estimated_normals_are_near_the_true_ones():
     assert per_vertex[0] < 0.5 * per_vertex[1]
 
 
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # NumPy says so, kernels wrap
 @pytest.mark.parametrize("name", ["two_triangles", "with_all_attributes", "degenerate_and_duplicate"])
 def test_every_prefix_and_every_flipped_bit_is_safe(name):
     patch = patch_of(corpus.MESHES[name]())
@@ -162,6 +164,7 @@ def test_every_prefix_and_every_flipped_bit_is_safe(name):
         assert not again.faces.size or 0 <= again.faces.min() <= again.faces.max() < len(again.positions)
 
 
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # NumPy says so, kernels wrap
 @given(st.binary(max_size=80))
 @settings(deadline=None)
 def test_any_bytes_are_safe(tail):

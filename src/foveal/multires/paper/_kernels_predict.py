@@ -10,16 +10,22 @@ from foveal.base.jit import kernel
 
 
 @kernel
+def _wrapped(value):
+    """`value` modulo 2^32, as an int32 has it."""
+    return ((value + 0x80000000) & 0xFFFFFFFF) - 0x80000000
+
+
+@kernel
 def residuals(values, corners, base, out):
     """out[i] = values[i] - (values[a] + values[b] - values[apex]); corners of -1 mean `base`."""
     for i in range(len(values)):
         a, b, apex = corners[i]
         for j in range(values.shape[1]):
             if a < 0:
-                out[i, j] = np.int64(values[i, j]) - base[j]
+                out[i, j] = _wrapped(np.int64(values[i, j]) - base[j])
             else:
                 guess = np.int64(values[a, j]) + values[b, j] - values[apex, j]
-                out[i, j] = values[i, j] - guess
+                out[i, j] = _wrapped(values[i, j] - guess)
 
 
 @kernel
@@ -29,15 +35,19 @@ def restore(values, corners, base):
         a, b, apex = corners[i]
         for j in range(values.shape[1]):
             if a < 0:
-                values[i, j] += base[j]
+                values[i, j] = _wrapped(values[i, j] + base[j])
             else:
                 guess = np.int64(values[a, j]) + values[b, j] - values[apex, j]
-                values[i, j] += guess
+                values[i, j] = _wrapped(values[i, j] + guess)
 
 
 @kernel
 def guess_normals(positions, faces, most, sums, out):
-    """Octahedral normals in [-most, most] of the sum of each vertex's triangles; sums (n, 3) is zero."""
+    """Octahedral normals in [-most, most] of the sum of each vertex's triangles; sums (n, 3) is zero.
+
+    Sums are modulo 2^64, which only coordinates beyond 2^29 can reach: a bad guess then, but the same
+    when encoding and decoding.
+    """
     edge = np.empty((2, 3), np.int64)
     for f in range(len(faces)):
         for j in range(3):

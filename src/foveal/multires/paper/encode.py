@@ -86,7 +86,7 @@ def _write(patch: Patch, word_bits: int, normal_bits: int, classes: str, may_del
         raise ValueError(f"faces must name vertices in [0, {n})")
     order, corners, symbols, splits, split_bits = _walk(faces, n, may_delay)
     positions = np.ascontiguousarray(patch.positions[order], dtype=np.int32)
-    base = positions[0] if n else np.zeros(3, np.int32)
+    base = (positions[0] if n else np.zeros(3)).astype(np.int64)
 
     writer = Writer(word_bits)
     per_component = classes == "component"
@@ -112,7 +112,7 @@ def _write(patch: Patch, word_bits: int, normal_bits: int, classes: str, may_del
     if patch.colours is not None:
         luma = np.empty((n, 3), dtype=np.int32)
         _kernels_predict.to_luma(patch.colours[order], luma)
-        _kernels_predict.residuals(luma, _beside(corners), np.zeros(3, np.int32), differences)
+        _kernels_predict.residuals(luma, _beside(corners), np.zeros(3, np.int64), differences)
         _write_differences(writer, "colour", differences, True)
     return writer
 
