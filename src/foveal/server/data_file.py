@@ -8,8 +8,7 @@ route of our own with pread more than ten times that. FileResponse also answers 
 import asyncio
 import os
 import secrets
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 
 from .asgi import EVERY_ANSWER, Headers, Receive, Scope, Send, finish, say, start
@@ -80,13 +79,14 @@ class DataFile:
         await start(send, 206 if ranges else 200, [*headers, *kind, (b"content-length", b"%d" % length)])
         if scope["method"] == "HEAD":
             await finish(send)
-        elif length <= _PIECE:
-            with self._opened(is_long=False) as descriptor:
-                pieces = [head + _read_at(descriptor, begin, stop - begin) for head, begin, stop in parts]
-            await finish(send, pieces[0] if len(pieces) == 1 else b"".join(pieces))
-        else:
-            with self._opened(is_long=True) as descriptor:
+        elif length > _PIECE:
+            descriptor = self._own_descriptor()
+            try:
                 await _stream(descriptor, parts, receive, send)
+            finally:
+                os.close(descriptor)
+        else:
+            await finish(send, self._read(parts))
 
     def _look(self) -> None:
         """Bring the shared descriptor, the size and the version up to date."""
@@ -137,18 +137,20 @@ class DataFile:
         parts.append((b"\r\n--%s--\r\n" % boundary, 0, 0))
         return [(b"content-type", b"multipart/byteranges; boundary=" + boundary)], parts
 
-    @contextmanager
-    def _opened(self, is_long: bool) -> Iterator[int]:
-        """A descriptor for one response; a long one has its own, as the shared one may be replaced."""
-        if self._descriptor is not None and not is_long:
-            yield self._descriptor
-            return
-        shared = self._descriptor
-        own = os.open(self.path, os.O_RDONLY | _BINARY) if shared is None else os.dup(shared)
+    def _read(self, parts: Parts) -> bytes:
+        """A short body at once."""
+        descriptor = self._own_descriptor() if self._descriptor is None else self._descriptor
         try:
-            yield own
+            pieces = [head + _read_at(descriptor, begin, stop - begin) for head, begin, stop in parts]
         finally:
-            os.close(own)
+            if self._descriptor is None:
+                os.close(descriptor)
+        return pieces[0] if len(pieces) == 1 else b"".join(pieces)
+
+    def _own_descriptor(self) -> int:
+        """One for a single response, which goes on even if the shared one is replaced meanwhile."""
+        shared = self._descriptor
+        return os.open(self.path, os.O_RDONLY | _BINARY) if shared is None else os.dup(shared)
 
 
 def _read_at(descriptor: int, start: int, length: int) -> bytes:

