@@ -72,4 +72,4 @@ def _plain(report: object) -> dict[str, Any]:
 
     if dataclasses.is_dataclass(report) and not isinstance(report, type):
         return dataclasses.asdict(report)
-    return {}
+    return dict(report) if isinstance(report, dict) else {}
