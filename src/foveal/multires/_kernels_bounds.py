@@ -184,7 +184,7 @@ def measure(
     start[f] is where the search for face f's pieces begins. carried are the fine faces' own errors, which
     a piece brings along. errors are of the coarse faces: `faces` if is_coarse_to_fine, else `onto_faces`.
     Triangles of pieces farther than `suspicious` go to `later` (k, 3, 3) with their face, as long as there
-    is room. stack (k, 12, 3), stack_info (k, 4), work (2, 12, 3) and sides (12,) are scratch. Returns how
+    is room. stack (k, 20, 3), stack_info (k, 4), work (2, 20, 3) and sides (20,) are scratch. Returns how
     many wait in `later`.
     """
     limit = len(stack) - 4

@@ -316,6 +316,17 @@ def breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, s
 
 
 @kernel
+def shared_faces(faces, alive, starts, counts, refs, u, v):
+    """How many faces hold both u and v."""
+    shared = 0
+    for i in range(starts[u], starts[u] + counts[u]):
+        f = refs[i]
+        if alive[f] and (faces[f, 0] == v or faces[f, 1] == v or faces[f, 2] == v):
+            shared += 1
+    return shared
+
+
+@kernel
 def blend(attributes, positions, u, v, x, y, z):
     """Attributes of the new vertex, by where it lies along the edge."""
     ex, ey, ez = (
@@ -434,6 +445,8 @@ def collapse(
                 continue
             if turns_over(positions, faces, alive, starts, counts, refs, v, u, x, y, z):
                 continue
+        elif shared_faces(faces, alive, starts, counts, refs, u, v) >= live:
+            continue  # a cell never becomes empty
         if end + counts[u] + counts[v] > len(refs):
             end = compact(alive, starts, counts, refs, fresh)
         if not locked[u]:

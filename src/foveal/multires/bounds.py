@@ -14,6 +14,9 @@ __all__ = ["deviation"]
 
 _STACK = 64  # pieces of one triangle that may wait; beyond it cutting stops and the bound is looser
 
+#: Room for the corners of a piece. Cutting ends at nine, and rounding may make a cut add one for each.
+_CORNERS = 20
+
 #: Pieces that may be measured closely. On the dragon 1 % are suspicious; soups have many more, for which
 #: time matters more than the last factor of two.
 _LATER = 4096
@@ -105,10 +108,10 @@ class _Target:
             is_coarse_to_fine,
             suspicious,
             _SLACK / _SUSPICIOUS * suspicious,
-            np.empty((_STACK, 12, 3)),
+            np.empty((_STACK, _CORNERS, 3)),
             np.empty((_STACK, 4), np.int32),
-            np.empty((2, 12, 3)),
-            np.empty(12),
+            np.empty((2, _CORNERS, 3)),
+            np.empty(_CORNERS),
             out,
             later,
             later_face,

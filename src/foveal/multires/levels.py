@@ -140,9 +140,8 @@ class Levels:
                 else:
                     self.intake.close()
                 pieces, count, triangles = made, row.cells, row.left
-                if row.cells == 1 and triangles <= max(settings.root_triangles, row.triangles // 2):
-                    break
-                if row.cells == 1 and triangles == row.triangles:
+                # No progress in a single cell: the root is larger than wished, and the notes say so.
+                if row.cells == 1 and (triangles <= settings.root_triangles or row.left == row.triangles):
                     break
         self.root = Piece.of(pieces.get(0))
         pieces.close()
