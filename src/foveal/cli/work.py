@@ -27,13 +27,13 @@ def dask_executor(address: str | None) -> Iterator[Executor | None]:
             "--dask: Dask is not installed. Install it with: pip install 'foveal[dask]'."
         ) from error
     try:
-        client = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
+        client = Client(address, timeout="10s")
     except (OSError, ValueError, TimeoutError) as error:
         raise FovealError(
             f"--dask {address}: no cluster answers there. Start one, or check the address."
         ) from error
     with client:
-        yield client.get_executor()  # type: ignore[no-untyped-call]
+        yield client.get_executor()
 
 
 def build_arguments(
