@@ -11,8 +11,8 @@ Where the text leaves something open, or its letter does not work:
 - VERTEX with a vertex met before is a code of its own, SPLIT, as the decoder must tell the two apart.
 - A component begins where the queue is empty, with three VERTEX or SPLIT codes for its first triangle.
 - DELAY, which is in the published program but not in the paper, leaves an edge for when the queue is
-  empty, if it would be a split. Without it a quarter of the dragon's vertices are splits whatever the
-  order of the queue; with it two in a hundred (one in a hundred triangles, as the paper says).
+  empty, if it would be a split. Without it a quarter of the dragon's vertices are splits; with it two in
+  a hundred, which is one in a hundred triangles, as the paper says.
 - The one class a vertex of the published program is the default; one a component, which the text
   could mean, is an option.
 - Colours are not quantised further, and the transform is one that whole numbers undo.
