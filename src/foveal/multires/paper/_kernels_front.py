@@ -5,6 +5,8 @@ The front is the boundary of the region: oriented edges in doubly linked lists h
 edge a row. An edge's number is its age, so the queue of active edges is a counter that runs through
 the rows and passes by those that are done. The right edge of a VERTEX, and the new edge of a LEFT or
 RIGHT, go before the queue: the region grows in spirals. Delayed edges come when the queue is empty.
+
+`encode` and `decode` are one loop each, somewhat long, so that the two can be read side by side.
 """
 
 import numpy as np
