@@ -141,7 +141,9 @@ class Levels:
                     self.intake.close()
                 pieces, count, triangles = made, row.cells, row.left
                 # No progress in a single cell: the root is larger than wished, and the notes say so.
-                if row.cells == 1 and (triangles <= settings.root_triangles or row.left == row.triangles):
+                if row.cells == 1 and (
+                    triangles <= settings.root_triangles or row.left > STALLED * row.triangles
+                ):
                     break
         self.root = Piece.of(pieces.get(0))
         pieces.close()

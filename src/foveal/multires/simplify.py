@@ -177,7 +177,7 @@ def _gather(
 ) -> Simplified:
     origin = np.flatnonzero(alive).astype(np.int32)
     if is_relaxed and len(origin):
-        origin = origin[_not_back_to_back(faces[origin])]
+        origin = origin[_without_copies(faces[origin])]
     left = faces[origin]
     used = np.zeros(len(positions), np.bool_)
     used[left] = True
@@ -188,22 +188,27 @@ def _gather(
     )
 
 
-def _not_back_to_back(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Which faces to keep when each pair of the same corners in opposite order cancels out.
+def _without_copies(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Which faces to keep of those with the same three corners.
 
-    One is kept if nothing else is left, so that a cell never becomes empty.
+    Two in opposite order cancel out. Of those left one is kept if they are odd in number, two if even, so
+    that the number of faces on an edge stays odd or even. If nothing were left the first two are kept: a
+    cell never becomes empty.
     """
-    ordered = np.sort(faces, axis=1)
     a, b, c = faces.T
-    is_even = ((a < b) & (b < c)) | ((b < c) & (c < a)) | ((c < a) & (a < b))
-    order = np.lexsort((is_even, ordered[:, 2], ordered[:, 1], ordered[:, 0]))
-    keep = np.ones(len(faces), np.bool_)
-    same = np.flatnonzero((np.diff(ordered[order], axis=0) == 0).all(axis=1))
-    last = -1
-    for i in same:  # seldom many: only relaxed cells come here
-        if i >= last and is_even[order[i]] != is_even[order[i + 1]]:
-            keep[order[i]] = keep[order[i + 1]] = False
-            last = i + 1
+    sign = np.where(((a < b) & (b < c)) | ((b < c) & (c < a)) | ((c < a) & (a < b)), 1, -1)
+    _, group = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    excess = np.zeros(group.max() + 1, np.int64)
+    np.add.at(excess, group, sign)
+    wanted = np.where(excess == 0, 0, 2 - excess % 2)
+    # The place of each face among those of its group that have the majority's sign.
+    is_major = sign == np.sign(excess)[group]
+    order = np.lexsort((np.arange(len(faces)), ~is_major, group))
+    begin = np.searchsorted(group[order], np.arange(len(excess)))
+    place = np.empty(len(faces), np.int64)
+    place[order] = np.arange(len(faces)) - begin[group[order]]
+    keep: NDArray[np.bool_] = is_major & (place < wanted[group])
     if not keep.any():
         keep[:2] = True
     return keep

@@ -149,7 +149,7 @@ def kind_after(kind, code):
             return FRESH_RIGHT
         return FOLLOWED_RIGHT if code == END else FOLLOWED_OTHER
     if kind == FRESH_RIGHT:
-        return FOLLOWED_RIGHTS if code == RIGHT or code == END else FOLLOWED_RIGHT
+        return FOLLOWED_RIGHTS if (code == RIGHT) | (code == END) else FOLLOWED_RIGHT
     return kind
 
 
@@ -203,7 +203,21 @@ def _walk(following, previous, gate, slot):
 
 @kernel
 def grow(
-    faces, twin, done, index, degree, slots, state, slot_of, stack, codes, contexts, extra, order, corners, is_edge
+    faces,
+    twin,
+    done,
+    index,
+    degree,
+    slots,
+    state,
+    slot_of,
+    stack,
+    codes,
+    contexts,
+    extra,
+    order,
+    corners,
+    is_edge,
 ):
     """Grow over all triangles and write down how.
 
@@ -325,10 +339,8 @@ def grow(
                     vertices += 1
                     met = -1
                 else:
-                    met = _occurrence(
-                        twin, done, state, half_edge, slot_of, following, leaving, arriving
-                    )
-                    if met < 0 or origin[met] != v or met == gate or met == nxt:
+                    met = _occurrence(twin, done, state, half_edge, slot_of, following, leaving, arriving)
+                    if met < 0 or origin[met] != v or (met == gate) | (met == nxt):
                         met = -1
                         last = MET
                         extra[extras] = vertices - 1 - index[v]

@@ -27,8 +27,8 @@ from .layout import (
     ASIDE_AT,
     AT_DEAD,
     BOUNDARY,
-    CODE_AT,
     COARSE_AT,
+    CODE_AT,
     COLOUR_AT,
     END,
     ESCAPE,
@@ -149,7 +149,7 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
             elif last == END:
                 if state[nxt] != LIVE or state[prv] != LIVE or following[nxt] != prv:
                     return -1, a, at
-                if nxt == gate or prv == gate or nxt == prv:
+                if (nxt == gate) | (prv == gate) | (nxt == prv):
                     return -1, a, at
                 corners[vertices - 1, 5] = kind = kind_after(kind, last)
                 v = origin[prv]
@@ -175,7 +175,7 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
                             met = _step(following, previous, gate, walk)
                     else:
                         met = previous[prv]
-                    if met < 0 or state[met] == FREE or met == gate or met == nxt:
+                    if met < 0 or state[met] == FREE or (met == gate) | (met == nxt):
                         return -1, a, at
                     v = origin[met]
                     stack[top] = gate
@@ -286,7 +286,7 @@ def normals(words, a, b, at, slots, table_of, shift_of, is_edge, most, pairs):
 def colours(words, a, b, at, slots, table_of, shift_of, corners, vertices, ycc, out):
     """Fill `out`; `ycc` (n, 3) int32 is scratch. Returns (a, b, at)."""
     for v in range(len(out)):
-        y = o = g = contrast = 0
+        y = o = g = contrast = np.int64(0)
         if v < vertices and corners[v, 5] != FIRST:
             i, j = corners[v, 0], corners[v, 1]
             y = (np.int64(ycc[i, 0]) + ycc[j, 0]) >> 1

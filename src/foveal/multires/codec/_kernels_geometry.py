@@ -9,7 +9,6 @@ from foveal.base.jit import inlined, kernel
 
 from .layout import (
     DEGREES,
-    FIRST,
     FOLLOWED_OTHER,
     FOLLOWED_RIGHT,
     FRESH,
@@ -114,7 +113,7 @@ def across(u, v, w, along, aside):
     """How far a plane with normal (u, v, w) leads across for steps along and aside, rounded."""
     if w == 0.0:
         return 0
-    return int(math.floor(0.5 - (u * along + v * aside) / w))
+    return math.floor(0.5 - (u * along + v * aside) / w)
 
 
 @kernel

@@ -4,8 +4,9 @@
 import numpy as np
 
 from foveal.base.jit import kernel
+from foveal.coding._kernels_rans import STATE_B
 
-from ._kernels_encode import NUMBER, STATE_B
+from ._kernels_encode import NUMBER
 from ._kernels_geometry import degree_class, predict, settled
 from .layout import DEGREES, ESCAPE, FIRST, MET, MIDDLE, SPLIT, START, WALK_AT, WALK_FAR
 

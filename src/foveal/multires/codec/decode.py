@@ -93,9 +93,7 @@ def decode(
         normals = np.empty((n, 2), np.int16)
         _kernels_geometry.vertex_normals(positions, faces, sums)
         _kernels_geometry.predicted_octahedral(sums, most, normals)
-        a, b, at = _kernels_decode.normals(
-            words, a, b, at, slots, table_of, shift_of, is_edge, most, normals
-        )
+        a, b, at = _kernels_decode.normals(words, a, b, at, slots, table_of, shift_of, is_edge, most, normals)
     if has_colours:
         colours = np.empty((n, 3), np.uint8)
         ycc = np.empty((n, 3), np.int32)
@@ -120,5 +118,3 @@ def _varint(data: bytes, at: int) -> tuple[int, int]:
         if data[at - 1] < 128:
             return value, at
     raise FovealError(_DAMAGED)
-
-

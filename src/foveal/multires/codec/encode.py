@@ -5,12 +5,13 @@ from numpy.typing import NDArray
 
 from foveal.coding import _kernels_rans
 
-from . import _kernels_encode, _kernels_geometry, layout
+from . import _kernels_encode, layout
 from .grown import Grown, grow
+from .normals import predicted_normals
 from .patch import Patch
 from .tables import Tables
 
-__all__ = ["coarse_grid", "encode", "events", "predicted_pairs"]
+__all__ = ["coarse_grid", "encode", "events"]
 
 
 def encode(patch: Patch, tables: Tables, /) -> bytes:
@@ -84,30 +85,15 @@ def events(
     if patch.normals is not None:
         index = np.empty(n, np.int32)
         index[grown.order] = np.arange(n, dtype=np.int32)
-        predicted = predicted_pairs(positions, index[patch.faces], normal_bits)
+        predicted = predicted_normals(positions, index[patch.faces], bits=normal_bits)
         normals = np.ascontiguousarray(patch.normals[grown.order], np.int16)
-        at += _kernels_encode.normal_events(
-            normals, predicted, grown.is_edge, n, contexts[at:], values[at:]
-        )
+        at += _kernels_encode.normal_events(normals, predicted, grown.is_edge, n, contexts[at:], values[at:])
     if patch.colours is not None:
         colours = np.ascontiguousarray(patch.colours[grown.order], np.uint8)
         at += _kernels_encode.colour_events(
             colours, corners, n, np.empty((n, 3), np.int32), contexts[at:], values[at:]
         )
     return contexts[:at], values[:at]
-
-
-def predicted_pairs(
-    positions: NDArray[np.int32], faces: NDArray[np.int32], bits: int, /
-) -> NDArray[np.int16]:
-    """Octahedral pairs of the normals that the geometry itself gives."""
-    sums = np.empty((len(positions), 3), np.int64)
-    _kernels_geometry.vertex_normals(
-        np.ascontiguousarray(positions, np.int32), np.ascontiguousarray(faces, np.int32), sums
-    )
-    out = np.empty((len(positions), 2), np.int16)
-    _kernels_geometry.predicted_octahedral(sums, (1 << (bits - 1)) - 1, out)
-    return out
 
 
 def _varint(value: int) -> bytes:

@@ -6,6 +6,8 @@ Based on: Cigolle et al. A survey of efficient representations for independent u
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _kernels_geometry
+
 __all__ = ["dequantise_normals", "predicted_normals", "quantise_normals"]
 
 
@@ -41,7 +43,7 @@ def quantise_normals(normals: ArrayLike, /, *, bits: int = 10) -> NDArray[np.int
         xy = flat[:, :2]
         folded = (1.0 - np.abs(xy[:, ::-1])) * np.where(xy < 0, -1.0, 1.0)
         xy = np.where(flat[:, 2:] < 0, folded, xy)
-        whole = np.rint(np.nan_to_num(xy * most)).clip(-most, most).astype(np.int16)
+        whole: NDArray[np.int16] = np.rint(np.nan_to_num(xy * most)).clip(-most, most).astype(np.int16)
     whole[~np.isfinite(flat).all(axis=1)] = -most - 1
     return whole
 
@@ -75,13 +77,24 @@ def predicted_normals(
 ) -> NDArray[np.int16]:
     """The normals which the decoder expects of this geometry: area-weighted, octahedral.
 
-    A builder that has no better normals stores these; where the patch holds all of a vertex's triangles
-    they cost next to nothing.
+    Parameters
+    ----------
+    positions : (n, 3) int32
+        On the grid.
+    faces : (m, 3) int32
+        Indices in [0, n).
+
+    Returns
+    -------
+    (n, 2) int16
+        As from `quantise_normals`, in integer arithmetic: the same in every language. A builder that has no
+        better ones stores these; where a patch holds all of a vertex's triangles they cost next to nothing.
     """
-    p = positions.astype(np.int64)
-    a, b, c = (p[faces[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a).astype(np.float64)
-    total = np.zeros((len(p), 3))
-    for k in range(3):
-        np.add.at(total, faces[:, k], cross)
-    return quantise_normals(total, bits=bits)
+    if not 4 <= bits <= 14:
+        raise ValueError(f"bits must be 4 to 14, got {bits}")
+    points = np.ascontiguousarray(positions, np.int32)
+    sums = np.empty((len(points), 3), np.int64)
+    _kernels_geometry.vertex_normals(points, np.ascontiguousarray(faces, np.int32), sums)
+    out = np.empty((len(points), 2), np.int16)
+    _kernels_geometry.predicted_octahedral(sums, (1 << (bits - 1)) - 1, out)
+    return out

@@ -55,10 +55,7 @@ class Tables:
         w = self.weights.astype(np.int64)
         base, a, b, v = w[:, :1], w[:, 1 : 1 + d], w[:, 1 + d : 1 + 2 * d], w[:, 1 + 2 * d :]
         total = (
-            base[:, :, None, None]
-            + a[:, :, None, None, :]
-            + b[:, None, :, None, :]
-            + v[:, None, None, :, :]
+            base[:, :, None, None] + a[:, :, None, None, :] + b[:, None, :, None, :] + v[:, None, None, :, :]
         )
         return np.ascontiguousarray(total.reshape(-1, 4))
 

@@ -90,9 +90,9 @@ def _choose_shifts(sums: NDArray[np.int64], shift_of: NDArray[np.uint8]) -> None
             count, total = sums[context]
             while (total >> int(shift_of[context])) >= 8 * count and shift_of[context] < 15:
                 shift_of[context] += 1
-        for context in set(range(first, last)) - set(seen.tolist()):
+        for unseen in set(range(first, last)) - set(seen.tolist()):
             if len(seen):
-                shift_of[context] = shift_of[seen[np.abs(seen - context).argmin()]]
+                shift_of[unseen] = shift_of[seen[np.abs(seen - unseen).argmin()]]
 
 
 def _make_tables(
