@@ -1,0 +1,2 @@
+/** The text of src/format/patch.wasm.ts. */
+export function compile(): Promise<string>;
