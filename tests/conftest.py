@@ -3,6 +3,11 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# The compilation of a kernel must not be taken for a slow example.
+settings.register_profile("kernels", deadline=None)
+settings.load_profile("kernels")
 
 _SHARED = Path(__file__).parents[2] / "shared" / "data"
 
