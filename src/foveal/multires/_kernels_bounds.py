@@ -42,7 +42,7 @@ def normals_of(positions, faces, across, out):
 
 @kernel
 def plane_through(positions, a, b, mx, my, mz, out, f, k):
-    """out[f, k] = plane (n, d) through the edge a, b along the direction m, n to the left of the edge seen from m's tip."""
+    """out[f, k] = plane (n, d) through the edge a, b along m; n to the left of the edge, m pointing up."""
     ex, ey, ez = (
         positions[b, 0] - positions[a, 0],
         positions[b, 1] - positions[a, 1],

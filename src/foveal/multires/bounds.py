@@ -156,15 +156,11 @@ class _Target:
             size = np.maximum(1, np.ceil(extent / width)).astype(np.int64)
             boxes = int(size.prod())
         counts, nothing = np.zeros(boxes + 1, np.int64), np.empty(0, np.int32)
-        total = kernels.file_faces(
-            self.positions, self.faces, low, 1 / width, size, counts, nothing, True
-        )
+        total = kernels.file_faces(self.positions, self.faces, low, 1 / width, size, counts, nothing, True)
         starts = np.zeros(boxes + 1, np.int64)
         np.cumsum(counts[:-1], out=starts[1:])
         refs = np.empty(total, np.int32)
-        kernels.file_faces(
-            self.positions, self.faces, low, 1 / width, size, starts[:-1].copy(), refs, False
-        )
+        kernels.file_faces(self.positions, self.faces, low, 1 / width, size, starts[:-1].copy(), refs, False)
         return low, 1 / width, size, starts, refs
 
 

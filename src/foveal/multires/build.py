@@ -167,7 +167,7 @@ def build(
         for sentence in intake.repairs.sentences():
             progress.note(sentence)
         _note_trouble(levels.levels, progress)
-        graph, tables, header = _write(
+        graph, header = _write(
             Path(output_path), source, intake, levels, chosen, settings, pool, progress, clock
         )
     return BuildReport(
@@ -185,14 +185,12 @@ def build(
 class _Clock:
     def __init__(self) -> None:
         self._last = time.perf_counter()
-        self._cpu = time.process_time()
         self.laps: dict[str, float] = {}
 
     def lap(self, name: str) -> None:
         now = time.perf_counter()
         self.laps[name] = round(now - self._last, 4)
         self._last = now
-        self.laps[name+'_cpu']=time.process_time()-self._cpu;self._cpu=time.process_time()
 
 
 def _source(source: MeshSource | TriMesh | str | os.PathLike[str]) -> MeshSource:
@@ -261,7 +259,7 @@ def _write(
     pool: Executor,
     progress: Progress,
     clock: _Clock,
-) -> tuple[Graph, codec.Tables, dict[str, Any]]:
+) -> tuple[Graph, dict[str, Any]]:
     plan = _Plan(levels, step)
     patches = plan.patches
     every = max(1, len(patches) // _TRAINING)
@@ -279,7 +277,7 @@ def _write(
         header = _header(source, intake, levels, plan, step, settings)
         writer.finish(header, graph_chunk.pack(graph, tables.to_bytes()))
     clock.lap("encode")
-    return graph, tables, header
+    return graph, header
 
 
 def _encode(item: tuple[list[codec.Patch], codec.Tables]) -> list[bytes]:

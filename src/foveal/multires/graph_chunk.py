@@ -1,4 +1,4 @@
-"""Chunk 0 of a multires file: the graph's columns and the codec's tables, byte by byte as in spec/container.md."""
+"""Chunk 0 of a multires file: the graph's columns and the codec's tables, as in spec/container.md."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -197,7 +197,9 @@ class Levels:
             row.locked += result.locked
             row.error = max(row.error, result.error)
             row.relaxed_cells += result.is_relaxed
-            row.stalled_cells += left > max(RELAXED * result.triangles, self.settings.root_triangles // row.cells)
+            row.stalled_cells += left > max(
+                RELAXED * result.triangles, self.settings.root_triangles // row.cells
+            )
             if result.shared is not None:
                 sums.append(result.shared)
             if tally is not None:

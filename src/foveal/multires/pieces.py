@@ -61,7 +61,7 @@ def local_numbers(ids: NDArray[np.int32], /) -> tuple[NDArray[np.int32], NDArray
 
 
 def join(pieces: list[Piece], /) -> tuple[Piece, list[NDArray[np.int32]]]:
-    """One piece of several, vertices with one id becoming one; and for each piece its vertices' new indices."""
+    """One piece of several, equal ids becoming one vertex; and for each piece its vertices' new indices."""
     if len(pieces) == 1:
         return pieces[0], [np.arange(len(pieces[0].ids), dtype=np.int32)]
     local, first = local_numbers(np.concatenate([p.ids for p in pieces]))

@@ -105,7 +105,7 @@ class Multires:
         return found
 
     def patch(self, number: int, /) -> codec.Patch:
-        """One decoded patch; its vertices and triangles may stand in another order than they were built in."""
+        """One decoded patch; vertices and triangles may stand in another order than when built."""
         node = int(self.graph.owner[number])
         first = int(self.graph.first_patch[node])
         begin = int(self.graph.patch_bytes[first:number].sum())
@@ -127,7 +127,8 @@ class Multires:
             raise FovealError(f"{self.name}: patch {number}: {error}") from error
         if len(patch.positions) != vertices or len(patch.faces) != triangles:
             raise FovealError(
-                f"{self.name}: patch {number} does not hold what the graph says. Copy or build the file again."
+                f"{self.name}: patch {number} does not hold what the graph says. "
+                "Copy or build the file again."
             )
         return patch
 

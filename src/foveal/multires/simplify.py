@@ -184,7 +184,14 @@ def _gather(
     kept = np.flatnonzero(used).astype(np.int32)
     index = np.cumsum(used, dtype=np.int32) - 1
     return Simplified(
-        positions[kept], attributes[kept], index[left].astype(np.int32), kept, origin, is_relaxed, typical_error, across
+        positions[kept],
+        attributes[kept],
+        index[left].astype(np.int32),
+        kept,
+        origin,
+        is_relaxed,
+        typical_error,
+        across,
     )
 
 

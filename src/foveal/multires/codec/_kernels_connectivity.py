@@ -3,6 +3,8 @@
 
 import math
 
+import numpy as np
+
 from foveal.base.jit import inlined, kernel
 
 from .layout import (
@@ -34,33 +36,49 @@ from .layout import (
 )
 
 FREE, LIVE, DEAD = 0, 1, 2
+_MOST_SHEETS = 16  # triangles at an edge that one is compared with
 _MOST_TURNS = 256  # triangles looked at around a vertex to find it on the front
 
 
 @kernel
-def sort_edges(faces, starts, first, order):
-    """Order the half-edges 3 t + k so that those with the same two ends are neighbours.
+def sort_edges(faces, starts, keys):
+    """Sort half-edges 3 t + k by their two ends: a counting sort by the lesser, shell sorts by the greater.
 
-    Two counting sorts, by greater then by lesser end. `starts` has one more than the vertices; `first`
-    and `order` one a half-edge.
+    keys[starts[v]:starts[v + 1]] = greater end << 32 | half-edge << 1 | (runs from the greater end), for
+    the half-edges whose lesser end is v; starts has two more than the vertices. Triangles that name a
+    vertex twice are left out.
     """
-    half_edges = 3 * len(faces)
-    for turn in range(2):
-        starts[:] = 0
-        for i in range(half_edges):
-            a, b = faces[i // 3, i % 3], faces[i // 3, (i + 1) % 3]
-            starts[(max(a, b) if turn == 0 else min(a, b)) + 1] += 1
-        for v in range(len(starts) - 1):
-            starts[v + 1] += starts[v]
-        for i in range(half_edges):
-            h = i if turn == 0 else first[i]
-            a, b = faces[h // 3, h % 3], faces[h // 3, (h + 1) % 3]
-            end = max(a, b) if turn == 0 else min(a, b)
-            if turn == 0:
-                first[starts[end]] = h
-            else:
-                order[starts[end]] = h
-            starts[end] += 1
+    starts[:] = 0
+    for t in range(len(faces)):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        if a != b and b != c and c != a:
+            starts[min(a, b) + 2] += 1
+            starts[min(b, c) + 2] += 1
+            starts[min(c, a) + 2] += 1
+    for v in range(2, len(starts)):
+        starts[v] += starts[v - 1]
+    for t in range(len(faces)):
+        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+        if a != b and b != c and c != a:
+            for k in range(3):
+                low, high = min(a, b), max(a, b)
+                keys[starts[low + 1]] = np.int64(high) << 32 | (3 * t + k) << 1 | (a > b)
+                starts[low + 1] += 1
+                a, b, c = b, c, a
+    for v in range(len(starts) - 2):
+        begin, end = starts[v], starts[v + 1]
+        gap = 1
+        while 3 * gap < end - begin:
+            gap = 3 * gap + 1
+        while gap > 0:
+            for i in range(begin + gap, end):
+                key = keys[i]
+                j = i - gap
+                while j >= begin and keys[j] > key:
+                    keys[j + gap] = keys[j]
+                    j -= gap
+                keys[j + gap] = key
+            gap //= 3
 
 
 @kernel
@@ -86,48 +104,35 @@ def _crease(positions, faces, s, t):
 
 
 @kernel
-def pair_edges(positions, faces, order, twin):
+def pair_edges(positions, faces, starts, keys, twin):
     """twin[h] = the half-edge on the other side of h, or -1 at a boundary.
 
     Where more than two triangles share an edge, those that continue each other most smoothly are
     paired: both sides of two sheets that touch keep their neighbour, instead of all losing it.
     """
-    half_edges = len(order)
     twin[:] = -1
-    i = 0
-    while i < half_edges:
-        h = order[i]
-        a, b = faces[h // 3, h % 3], faces[h // 3, (h + 1) % 3]
-        low, high = min(a, b), max(a, b)
-        j = i + 1
-        while j < half_edges:
-            k = order[j]
-            c, d = faces[k // 3, k % 3], faces[k // 3, (k + 1) % 3]
-            if min(c, d) != low or max(c, d) != high:
-                break
-            j += 1
-        for x in range(i, j):
-            hx = order[x]
-            t = hx // 3
-            if twin[hx] >= 0 or faces[t, 0] == faces[t, 1] or faces[t, 1] == faces[t, 2]:
-                continue
-            if faces[t, 2] == faces[t, 0]:
-                continue
-            best, best_cosine = -1, -3.0
-            for y in range(x + 1, min(j, x + 16)):
-                hy = order[y]
-                s = hy // 3
-                if twin[hy] >= 0 or faces[s, hy % 3] == faces[t, hx % 3]:
+    for v in range(len(starts) - 2):
+        i, last = starts[v], starts[v + 1]
+        while i < last:
+            j = i + 1
+            while j < last and keys[j] >> 32 == keys[i] >> 32:
+                j += 1
+            for x in range(i, j):
+                h = (keys[x] & 0xFFFFFFFF) >> 1
+                if twin[h] >= 0:
                     continue
-                if faces[s, 0] == faces[s, 1] or faces[s, 1] == faces[s, 2] or faces[s, 2] == faces[s, 0]:
-                    continue
-                cosine = 0.0 if j - i == 2 else _crease(positions, faces, t, s)
-                if cosine > best_cosine:
-                    best, best_cosine = hy, cosine
-            if best >= 0:
-                twin[hx] = best
-                twin[best] = hx
-        i = j
+                best, best_cosine = -1, -3.0
+                for y in range(x + 1, min(j, x + _MOST_SHEETS)):
+                    other = (keys[y] & 0xFFFFFFFF) >> 1
+                    if twin[other] >= 0 or (keys[x] ^ keys[y]) & 1 == 0:
+                        continue
+                    cosine = 0.0 if j - i == 2 else _crease(positions, faces, h // 3, other // 3)
+                    if cosine > best_cosine:
+                        best, best_cosine = other, cosine
+                if best >= 0:
+                    twin[h] = best
+                    twin[best] = h
+            i = j
 
 
 @inlined

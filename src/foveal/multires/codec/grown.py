@@ -49,9 +49,10 @@ def grow(patch: Patch, /) -> Grown:
     faces = np.ascontiguousarray(patch.faces, np.int32)
     n, m = len(positions), len(faces)
     twin = np.empty(3 * m, np.int32)
-    order = np.empty(3 * m, np.int32)
-    _kernels_connectivity.sort_edges(faces, np.empty(n + 1, np.int64), np.empty(3 * m, np.int32), order)
-    _kernels_connectivity.pair_edges(positions, faces, order, twin)
+    starts = np.empty(n + 2, np.int64)
+    keys = np.empty(3 * m, np.int64)
+    _kernels_connectivity.sort_edges(faces, starts, keys)
+    _kernels_connectivity.pair_edges(positions, faces, starts, keys, twin)
     slots = 3 * m + 4
     steps = 4 * m + 4
     codes = np.empty(steps, np.uint8)
