@@ -106,7 +106,7 @@ def meshes():
         "all": patch(
             sheet_points,
             sheet_faces,
-            quantise_normals(rng.normal(0, 1, (len(sheet_points), 3)) + [0, 0, 4]),
+            quantise_normals(rng.normal((0, 0, 4), 1, (len(sheet_points), 3))),
             rng.integers(0, 256, (len(sheet_points), 3)),
         ),
     }
