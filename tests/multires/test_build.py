@@ -176,7 +176,7 @@ def test_oddities_are_counted(tmp_path):
 
 
 def test_only_degenerate_triangles_are_refused_and_leave_nothing(tmp_path):
-    with pytest.raises(FovealError, match="triangle"):
+    with pytest.raises(FovealError, match="two corners"):
         multires.build(TriMesh.of([[0, 0, 0], [1, 0, 0]], [[0, 1, 1]]), tmp_path / "d.fov")
     assert list(tmp_path.iterdir()) == []
 

@@ -139,7 +139,7 @@ def build(
         pool = executor if executor is not None else stack.enter_context(threads(workers))
         ahead = 2 * thread_count(workers)
         room = Room(_room_bytes(memory_bytes), folder)
-        intake = Intake(room, source.has_normals and normals != "none", source.has_colours)
+        intake = Intake(room, source.has_normals and normals != "none", source.has_colours, name=source.name)
         stack.callback(intake.close)
         intake.read(source, progress)
         clock.lap("read")

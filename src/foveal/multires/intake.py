@@ -65,6 +65,7 @@ class Intake:
     low: NDArray[np.float64] = field(default_factory=lambda: np.full(3, np.inf))
     high: NDArray[np.float64] = field(default_factory=lambda: np.full(3, -np.inf))
     repairs: Repairs = field(default_factory=Repairs)
+    name: str = "mesh"
 
     def __post_init__(self) -> None:
         self._positions = Column(self.room, np.float64, 3)
@@ -97,7 +98,7 @@ class Intake:
         done = 0
         with (
             progress.stage("Reading", float(source.size_hint) or None) as stage,
-            closing(source.blocks()) as blocks,  # type: ignore[type-var]
+            closing(source.blocks()) as blocks,
         ):
             for block in blocks:
                 if isinstance(block, VertexBlock):

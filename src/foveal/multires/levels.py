@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from foveal.base.errors import FovealError
 from foveal.base.progress import Progress
 from foveal.base.tasks import ordered_map
 
@@ -177,6 +178,13 @@ class Levels:
             for cell, piece in found:
                 kernels.claim(piece.ids, cell, self._owner)
                 cells.put(cell, maker, piece)
+        # The tree knows triangles that the door left out since, so a cell may have stayed empty.
+        cells.content = [content for content in cells.content if content]
+        if not cells.content:
+            raise FovealError(
+                f"{self.intake.name}: each of its triangles has two corners in one point, so there is "
+                "nothing to see. Export the model again."
+            )
         return cells
 
     def _simplify(
@@ -305,7 +313,8 @@ def _split(item: tuple[Piece, Partition]) -> list[tuple[int, Piece]]:
 
 def _centroids(arrays: tuple[NDArray[np.int32], ...], stride: int, first: int) -> NDArray[np.float64]:
     _, positions, faces = arrays[:3]
-    return positions.astype(np.float64)[faces[first % stride :: stride]].sum(axis=1)
+    points: NDArray[np.float64] = positions.astype(np.float64)[faces[first % stride :: stride]].sum(axis=1)
+    return points
 
 
 def _whole_normals(sums: list[SharedNormals], bits: int) -> tuple[NDArray[np.int32], NDArray[np.int16]]:

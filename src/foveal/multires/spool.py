@@ -62,14 +62,14 @@ class _File:
         return at
 
     def write(self, at: int, data: NDArray[Any]) -> None:
-        view = memoryview(np.ascontiguousarray(data).reshape(-1).view(np.uint8))
+        view = memoryview(np.ascontiguousarray(data).reshape(-1).view(np.uint8).data)
         while len(view):
             done = os.pwrite(self._descriptor, view[: 1 << 30], at)
             view, at = view[done:], at + done
 
     def read(self, at: int, dtype: DTypeLike, shape: tuple[int, ...]) -> NDArray[Any]:
         out = np.empty(shape, dtype)
-        view = memoryview(out.reshape(-1).view(np.uint8))
+        view = memoryview(out.reshape(-1).view(np.uint8).data)
         while len(view):
             done = os.preadv(self._descriptor, [view[: 1 << 30]], at)
             if done == 0:

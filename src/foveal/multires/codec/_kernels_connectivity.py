@@ -7,7 +7,7 @@ import numpy as np
 
 from foveal.base.jit import inlined, kernel
 
-from .layout import (
+from ._kernels_layout import (
     AT_DEAD,
     BOUNDARY,
     DEAD_CONTEXTS,

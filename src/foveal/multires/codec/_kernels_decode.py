@@ -21,7 +21,7 @@ from ._kernels_connectivity import (
 )
 from ._kernels_encode import small_scale
 from ._kernels_geometry import across, degree_class, frame, predict, scale, wrap
-from .layout import (
+from ._kernels_layout import (
     ACROSS_AT,
     ALONG_AT,
     ASIDE_AT,

@@ -11,7 +11,7 @@ from foveal.base.jit import kernel
 from foveal.coding._kernels_rans import RAW, STATE_B, put_number
 
 from ._kernels_geometry import across, degree_class, frame, predict, scale, wrap
-from .layout import (
+from ._kernels_layout import (
     ACROSS_AT,
     ALONG_AT,
     ASIDE_AT,

@@ -8,7 +8,7 @@ from foveal.coding._kernels_rans import STATE_B
 
 from ._kernels_encode import NUMBER
 from ._kernels_geometry import degree_class, predict, settled
-from .layout import DEGREES, ESCAPE, FIRST, MET, MIDDLE, SPLIT, START, WALK_AT, WALK_FAR
+from ._kernels_layout import DEGREES, ESCAPE, FIRST, MET, MIDDLE, SPLIT, START, WALK_AT, WALK_FAR
 
 
 @kernel

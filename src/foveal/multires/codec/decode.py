@@ -4,7 +4,8 @@ import numpy as np
 
 from foveal.base.errors import FovealError
 
-from . import _kernels_decode, _kernels_geometry, layout
+from . import _kernels_decode, _kernels_geometry
+from . import _kernels_layout as layout
 from .patch import Patch
 from .tables import Tables
 

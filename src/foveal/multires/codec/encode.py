@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from foveal.coding import _kernels_rans
 
-from . import _kernels_encode, layout
+from . import _kernels_encode
+from . import _kernels_layout as layout
 from .grown import Grown, grow
 from .normals import predicted_normals
 from .patch import Patch

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _kernels_connectivity, layout
+from . import _kernels_connectivity
+from . import _kernels_layout as layout
 from .patch import Patch
 
 __all__ = ["Grown", "grow"]

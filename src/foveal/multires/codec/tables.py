@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from foveal.base.errors import FovealError
 from foveal.coding import rans
 
-from . import layout
+from . import _kernels_layout as layout
 
 __all__ = ["Tables"]
 

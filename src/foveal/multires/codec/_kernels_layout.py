@@ -1,4 +1,8 @@
-"""Numbers that encoder, decoder and specification share. `spec/patch.md` explains each."""
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Numbers that encoder, decoder and specification share. `spec/patch.md` explains each.
+
+Its name begins like the kernels' because their machine code holds these numbers: `base/jit.py` looks at it.
+"""
 
 # Codes of the region growing, one a triangle or boundary edge.
 NEW, RIGHT, LEFT, END, BOUNDARY, SPLIT, MET, SPLIT_NEXT, SPLIT_PREVIOUS, START = range(10)
