@@ -106,7 +106,8 @@ def build_file(
         mesh = source_from_mesh(source, up=options.up or "y")
     else:
         refuse_missing(Path(source))
-        mesh = open_source(source, up=options.up)
+        is_built = Path(source).suffix.lower() == ".fov"
+        mesh = (multires.source_of if is_built else open_source)(source, up=options.up)
     if is_cold():
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     return multires.build(mesh, Path(output), progress=progress, **options.arguments(), **work)
