@@ -23,7 +23,7 @@ FLAGS = [
     "--enable-unsafe-swiftshader",
 ]
 #: Machines that only test are slow and shared; what waits, waits for a state of the page, not for a time.
-PATIENCE_MS = 90_000
+PATIENCE_MS = 40_000
 
 
 def pytest_collection_modifyitems(items):

@@ -333,7 +333,7 @@ def test_picture_and_link_can_be_taken_away(open_page):
 
 def test_link_is_shown_where_it_cannot_be_copied(open_page):
     page = open_page()
-    page.evaluate("navigator.clipboard.writeText = () => Promise.reject(new Error('no'))")
+    page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }")
     page.keyboard.press("l")
     page.wait_for_selector("#link input")
     assert page.input_value("#link input") == page.url

@@ -31,7 +31,8 @@ export interface SettingsOptions {
   readonly reset: () => void;
 }
 
-const STEPS = 200;
+/** Few enough that one step is seen in the figures shown. */
+const STEPS = 60;
 
 export function makeSettings(options: SettingsOptions): HTMLDialogElement {
   const { dialog, body } = makeDialog("settings", WORDS.settings);
