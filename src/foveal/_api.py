@@ -277,7 +277,7 @@ def render(
     Returns
     -------
     (height, width, 3) uint8
-        sRGB.
+        sRGB. What shows no surface has the scene's `background`, or else the viewer's light one, a gradient.
 
     Examples
     --------

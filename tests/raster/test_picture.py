@@ -1,5 +1,6 @@
 """Pictures: the shading page, supersampling, backgrounds, and the file."""
 
+import dataclasses
 import json
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -9,11 +10,12 @@ import pytest
 from PIL import Image
 
 from foveal.base.errors import FovealError
+from foveal.mesh.normals import vertex_normals
 from foveal.mesh.shapes import icosphere
 from foveal.mesh.trimesh import TriMesh
 from foveal.raster import _kernels_shade as kernels
 from foveal.raster import gradient, picture, rasterise, write_png
-from foveal.raster.shade import PLASTER, decode_srgb, encode_srgb, tables, vertex_normals
+from foveal.raster.shade import PLASTER, decode_srgb, encode_srgb, tables
 from foveal.view.camera import Camera
 from raster import naive_raster
 
@@ -138,12 +140,14 @@ def test_wrong_backgrounds_and_sampling_are_refused():
         picture(ball, CAMERA, supersampling=0)
 
 
-def test_vertex_normals_of_a_ball_point_outwards_and_of_nothing_are_zero():
+def test_without_normals_of_its_own_a_mesh_has_means_of_its_faces():
     ball = icosphere(3)
-    normals = vertex_normals(ball)
-    assert ((normals * ball.positions).sum(axis=1) > 0.999).all()
+    given = dataclasses.replace(ball, normals=vertex_normals(ball))
+    np.testing.assert_array_equal(picture(ball, CAMERA), picture(given, CAMERA))
+    assert (picture(ball, CAMERA) != picture(ball, CAMERA, is_flat=True)).any()
+    # a surface with no area has no normals, and is nothing to see
     flat = TriMesh.of([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
-    assert (vertex_normals(flat) == 0).all()
+    assert not picture(flat, CAMERA).any()
 
 
 def test_png_round_trip(tmp_path):

@@ -68,7 +68,7 @@ def test_json_round_trip():
 def test_json_defaults():
     camera = Camera.from_json({"position": [0, 0, 1], "target": [0, 0, 0]})
     assert (camera.width, camera.height) == (1280, 720)
-    assert math.degrees(camera.field_of_view) == pytest.approx(45)
+    assert math.degrees(camera.field_of_view) == pytest.approx(40)  # as in the viewer
 
 
 @pytest.mark.parametrize(

@@ -49,20 +49,6 @@ def _volume(x, y, p, q):
 
 
 @kernel
-def add_vertex_normals(positions, faces, sums):
-    """Add each face's normal, as long as twice its area, to its corners."""
-    for f in range(len(faces)):
-        a, b, c = positions[faces[f, 0]], positions[faces[f, 1]], positions[faces[f, 2]]
-        ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-        for k in range(3):
-            corner = faces[f, k]
-            sums[corner, 0] += uy * vz - uz * vy
-            sums[corner, 1] += uz * vx - ux * vz
-            sums[corner, 2] += ux * vy - uy * vx
-
-
-@kernel
 def _unit(x, y, z, least):
     length = np.sqrt(x * x + y * y + z * z)
     if length > least:

@@ -10,12 +10,13 @@ from PIL import Image
 from foveal.base.errors import FovealError
 from foveal.base.files import whole_file
 from foveal.base.tasks import Executor, threads
+from foveal.mesh.normals import vertex_normals
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from . import _kernels_shade as kernels
 from .rasterise import BAND_ROWS, Screen, run_all
-from .shade import PLASTER, decode_srgb, shade_band, tables, vertex_normals
+from .shade import PLASTER, decode_srgb, shade_band, tables
 
 __all__ = ["Colour", "gradient", "picture", "write_png"]
 
@@ -87,7 +88,7 @@ def picture(
     behind = _linear_background(background, camera)
     wide = replace(camera, width=camera.width * supersampling, height=camera.height * supersampling)
     screen = Screen(mesh.positions, mesh.faces, wide, executor=executor)
-    normals = None if is_flat else vertex_normals(mesh)
+    normals = None if is_flat else vertex_normals(mesh) if mesh.normals is None else mesh.normals
     colours = mesh.colours if has_colours else None
     out = np.empty((camera.height, camera.width, 4), dtype=np.uint8)
 
@@ -124,14 +125,14 @@ def _linear_background(background: Background, camera: Camera) -> NDArray[np.flo
 
 
 def gradient(
-    camera: Camera, /, *, middle: Colour = (250, 249, 247), corners: Colour = (214, 211, 206)
+    camera: Camera, /, *, middle: Colour = (251, 249, 245), corners: Colour = (217, 211, 200)
 ) -> NDArray[np.uint8]:
-    """(height, width, 3) uint8: a background like the viewer's, from its middle to its corners.
+    """(height, width, 3) uint8: the viewer's light background, from its middle to its corners.
 
     Examples
     --------
     >>> gradient(Camera.of([0, 0, 1], [0, 0, 0], width=3, height=3))[0, 0].tolist()
-    [230, 228, 224]
+    [232, 228, 220]
     """
     aspect = camera.width / camera.height
     x = (2 * np.arange(camera.width) + 1) / camera.width - 1

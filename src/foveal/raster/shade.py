@@ -9,12 +9,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from foveal.mesh.trimesh import TriMesh
-
 from . import _kernels_shade as kernels
 from .rasterise import BAND_ROWS, Screen
 
-__all__ = ["PLASTER", "decode_srgb", "encode_srgb", "shade_band", "tables", "vertex_normals"]
+__all__ = ["PLASTER", "decode_srgb", "encode_srgb", "shade_band", "tables"]
 
 PLASTER = (214, 208, 198)
 """sRGB of a surface without colours."""
@@ -48,23 +46,6 @@ def tables() -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
     roots = np.arange(kernels.ENCODE_STEPS + 1) / kernels.ENCODE_STEPS
     encode = np.floor(255 * encode_srgb(roots * roots) + 0.5).astype(np.uint8)
     return decode_srgb(np.arange(256) / 255), encode
-
-
-def vertex_normals(mesh: TriMesh, /) -> NDArray[np.float32]:
-    """(n, 3): a mesh's own normals, or means of its faces' by area; zero where there is none.
-
-    Examples
-    --------
-    >>> vertex_normals(TriMesh.of([[0, 0, 0], [2, 0, 0], [0, 2, 0], [9, 9, 9]], [[0, 1, 2]])).tolist()
-    [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]
-    """
-    if mesh.normals is not None:
-        return mesh.normals
-    sums = np.zeros(mesh.positions.shape)
-    kernels.add_vertex_normals(mesh.positions, mesh.faces, sums)
-    lengths = np.linalg.norm(sums, axis=1, keepdims=True)
-    np.divide(sums, lengths, out=sums, where=lengths > 0)
-    return sums.astype(np.float32)
 
 
 def shade_band(

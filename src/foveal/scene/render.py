@@ -17,8 +17,9 @@ from .scene import Layer, Scene
 __all__ = ["frame", "read_camera", "render"]
 
 _UP = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-_FROM = {"x": (0.25, 1.0, 0.3), "y": (0.3, 0.25, 1.0), "z": (0.3, -1.0, 0.25)}
-"""From the object to the eye: a little from the right and from above, by the axis that points up."""
+_FROM = {"x": (0.25, -0.3, 1.0), "y": (0.3, 0.25, 1.0), "z": (0.3, -1.0, 0.25)}
+"""From the object to the eye, by the axis that points up: 0.3 to the right, 0.25 up, 1 to the front, which is
+-y where z is up and else z: the viewer's home."""
 
 
 def read_camera(path: str | os.PathLike[str], /, *, size: tuple[int, int] | None = None) -> Camera:
@@ -43,7 +44,7 @@ def read_camera(path: str | os.PathLike[str], /, *, size: tuple[int, int] | None
 
 
 def frame(scene: Scene, /, *, size: tuple[int, int] = (1280, 720)) -> Camera:
-    """A camera that sees every visible layer whole."""
+    """A camera that sees every visible layer whole, from where the viewer begins."""
     from foveal import multires
 
     lows, highs, up = [], [], "y"
@@ -88,7 +89,8 @@ def render(
     Returns
     -------
     (height, width, 3) uint8
-        sRGB; write it with `foveal.raster.write_png`.
+        sRGB; write it with `foveal.raster.write_png`. Behind all is the scene's background, or else the
+        viewer's light one, a gradient.
     """
     from foveal import multires, raster
     from foveal.lod.select import cut

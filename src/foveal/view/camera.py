@@ -51,7 +51,7 @@ class Camera:
         /,
         *,
         up: ArrayLike = (0.0, 1.0, 0.0),
-        field_of_view: float = math.radians(45),
+        field_of_view: float = math.radians(40),
         width: int = 1280,
         height: int = 720,
         near: float | None = None,
@@ -89,7 +89,7 @@ class Camera:
     ) -> Self:
         """A camera that just sees the whole box `low` to `high` from `direction` (from the box to the eye).
 
-        It aims at the middle of the box and keeps 4 % of the distance as a margin.
+        It aims at the middle of the box, from 1.12 times the distance that would just do: the viewer's home.
         """
         low, high = _triple(low, "low"), _triple(high, "high")
         towards = _triple(direction, "direction")
@@ -102,7 +102,7 @@ class Camera:
         tan_y = math.tan(camera.field_of_view / 2)
         tan_x = tan_y * camera.width / camera.height
         distance = backward + np.maximum(np.abs(right) / tan_x, np.abs(above) / tan_y)
-        away = max(1.04 * float(distance.max()), size / 1000)
+        away = max(1.12 * float(distance.max()), size / 1000)
         return cls.of(centre + camera.basis()[2] * away, centre, up=up, **options)
 
     def basis(self) -> NDArray[np.float64]:
@@ -162,7 +162,7 @@ class Camera:
                 data["position"],
                 data["target"],
                 up=data.get("up", (0.0, 1.0, 0.0)),
-                field_of_view=math.radians(data.get("field_of_view_degrees", 45.0)),
+                field_of_view=math.radians(data.get("field_of_view_degrees", 40.0)),
                 width=size[0],
                 height=size[1],
             )
