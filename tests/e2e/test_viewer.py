@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from e2e.page import build, coloured_ball, idle, picture, scene_of, stats
+from foveal.container import open_container
 
 NEAR = {"position": [0.3, 0.2, 1.25], "target": [0.1, 0.1, 0.9], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
 FAR = {"position": [0, 0, 60], "target": [0, 0, 0], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
@@ -67,14 +68,21 @@ def test_budgets_hold(open_page):
     assert stats(page)["receivedBytes"] == requests  # at the limit nothing comes and goes
 
 
-def test_nothing_grows_over_many_views(open_page):
+def test_nothing_grows_over_many_views(open_page, ball_file):
+    with open_container(ball_file) as file:
+        patches = file.header["patches"]
     page = open_page()
-    counts = []
+    cached = []
     for _ in range(6):
         for camera in (FAR, NEAR, FRONT):
             go(page, camera)
-        counts.append((stats(page)["gpu"]["geometries"], stats(page)["cacheBytes"]))
-    assert counts[1:] == counts[:1] * 5
+        cached.append(stats(page)["cacheBytes"])
+    assert cached[1:] == cached[:1] * 5
+    assert stats(page)["gpu"]["geometries"] <= patches + 4  # each at most once, and the page's own
+    page.evaluate("foveal.setBudgets({ bytes: 1e5 })")
+    go(page, FAR)
+    assert stats(page)["gpu"]["geometries"] < patches / 2
+    assert stats(page)["cacheBytes"] <= 1e5
 
 
 def test_no_hole_while_detail_arrives(open_page, site):

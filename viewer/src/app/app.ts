@@ -12,6 +12,7 @@ import { byId, make } from "./dom";
 import { watchPointer } from "./gestures";
 import { isField, pressKey } from "./keys";
 import { announce, note, showWarning } from "./notices";
+import { settingsOf } from "./ownSettings";
 import type { SceneFile } from "./sceneFile";
 import { makeSettings } from "./settings";
 import { copyLink, savePicture } from "./sharing";
@@ -167,7 +168,7 @@ export class App {
   }
 
   openSettings(): void {
-    this.#settings ??= this.#makeSettings();
+    this.#settings ??= makeSettings(settingsOf(this));
     this.#settings.showModal();
   }
 
@@ -316,75 +317,7 @@ export class App {
     }
   }
 
-  #makeSettings(): HTMLDialogElement {
-    const { stage } = this;
-    const own = defaultBudgets(deviceHints());
-    const million = (value: number): string => `${Number((value / 1e6).toPrecision(2))} million`;
-    return makeSettings({
-      numbers: [
-        {
-          id: "error",
-          label: "Error",
-          hint: "Smaller is finer and costs more.",
-          low: 0.5,
-          high: 16,
-          isLogarithmic: true,
-          show: (value) => `${value} px`,
-          get: () => stage.target.basePx,
-          set: (errorPx) => this.setErrorPx(errorPx),
-        },
-        {
-          id: "triangles",
-          label: "Triangles at most",
-          hint: "What the graphics draw in one picture.",
-          low: 1e5,
-          high: 2e7,
-          isLogarithmic: true,
-          show: million,
-          get: () => stage.triangleBudget,
-          set: (triangles) => this.setBudgets({ triangles }),
-        },
-        {
-          id: "memory",
-          label: "Memory at most",
-          hint: "Graphics memory for what is loaded.",
-          low: 32,
-          high: 4096,
-          isLogarithmic: true,
-          show: (value) => `${Math.round(value)} MB`,
-          get: () => this.#streamer.budgetBytes / 2 ** 20,
-          set: (mega) => this.setBudgets({ bytes: mega * 2 ** 20 }),
-        },
-        {
-          id: "view",
-          label: "Field of view",
-          hint: "Vertical angle; small is like a long lens.",
-          low: 10,
-          high: 90,
-          isLogarithmic: false,
-          show: (value) => `${Math.round(value)}°`,
-          get: () => stage.navigation.camera.fov,
-          set: (degrees) => {
-            stage.navigation.setFieldOfView(Math.round(degrees));
-            stage.invalidate();
-          },
-        },
-      ],
-      layers: stage.layers.map((layer, i) => ({
-        name: layer.name,
-        get: () => layer.group.visible,
-        set: () => this.#toggleLayer(i),
-      })),
-      getBackground: () => this.#state.background,
-      setBackground: (background) => this.change({ background }),
-      reset: () => {
-        this.setBudgets({ triangles: own.triangles, bytes: own.bytes });
-        this.change({ errorPx: null, background: INITIAL.background });
-      },
-    });
-  }
-
-  #toggleLayer(index: number): void {
+  toggleLayer(index: number): void {
     const { toggledLayers } = this.#state;
     const isToggled = toggledLayers.includes(index);
     this.change({

@@ -37,3 +37,17 @@ export function fromFrame(frame: Frame, point: Triple): Triple {
 }
 
 export const UP: Readonly<Record<Axis, Triple>> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+
+/** Half the sides of the box of all assets, in their frame. */
+export function halfBoxOf(assets: readonly Asset[], frame: Frame): [number, number, number] {
+  const half: [number, number, number] = [0, 0, 0];
+  for (const { info } of assets) {
+    for (let axis = 0; axis < 3; axis++) {
+      for (const corner of info.box) {
+        const at = info.origin[axis]! + info.step * corner[axis]! - frame.centre[axis]!;
+        half[axis] = Math.max(half[axis]!, Math.abs(at) * frame.scale);
+      }
+    }
+  }
+  return half;
+}

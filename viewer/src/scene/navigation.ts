@@ -40,7 +40,12 @@ export class Navigation {
   halfBox: Triple = [577, 577, 577];
   #isStill: boolean;
 
-  constructor(element: HTMLElement, onMove: () => void, isStill: boolean) {
+  constructor(
+    element: HTMLElement,
+    /** Called when a frame is due: the library tells of gestures and flights, not of moves at once. */
+    private readonly onMove: () => void,
+    isStill: boolean,
+  ) {
     this.controls = new CameraControls(this.camera, element);
     const { controls } = this;
     this.#isStill = isStill;
@@ -94,6 +99,7 @@ export class Navigation {
     const position = toFrame(this.frame, state.position);
     const target = toFrame(this.frame, state.target);
     void this.controls.setLookAt(...position, ...target, isSmooth && !this.#isStill);
+    this.onMove();
   }
 
   setUp(up: Triple): void {
@@ -108,6 +114,7 @@ export class Navigation {
   setFieldOfView(degrees: number): void {
     this.camera.fov = MathUtils.clamp(degrees, 5, 120);
     this.camera.updateProjectionMatrix();
+    this.onMove();
   }
 
   /** Where the eye is from the pivot: shares to the right, up and to the front, a unit vector. */
@@ -136,6 +143,7 @@ export class Navigation {
     const distance = this.#distanceToFit(towards, up) * HOME_MARGIN;
     const eye = towards.multiplyScalar(distance);
     void this.controls.setLookAt(eye.x, eye.y, eye.z, 0, 0, 0, isSmooth && !this.#isStill);
+    this.onMove();
   }
 
   /** From how far the corners of the scene's box are all in the picture. */
@@ -162,12 +170,14 @@ export class Navigation {
   orbit(rightDegrees: number, upDegrees: number): void {
     const { degToRad } = MathUtils;
     void this.controls.rotate(degToRad(-rightDegrees), degToRad(-upDegrees), !this.#isStill);
+    this.onMove();
   }
 
   /** Move by a share of the picture's height. */
   pan(right: number, up: number): void {
     const height = 2 * this.controls.distance * Math.tan(MathUtils.degToRad(this.camera.fov) / 2);
     void this.controls.truck(right * height, -up * height, !this.#isStill);
+    this.onMove();
   }
 
   /** Divide the distance to the pivot. */
@@ -175,11 +185,13 @@ export class Navigation {
     const target = this.controls.getTarget(new Vector3());
     const distance = this.controls.getPosition(new Vector3()).distanceTo(target);
     void this.controls.dollyTo(distance / factor, !this.#isStill);
+    this.onMove();
   }
 
   /** Turn to this point of the scene's frame and orbit about it from now on. */
   focus(point: Vector3): void {
     void this.controls.setTarget(point.x, point.y, point.z, !this.#isStill);
+    this.onMove();
   }
 
   /**

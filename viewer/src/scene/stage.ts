@@ -1,19 +1,18 @@
 /** The picture: renderer, camera, layers and the one loop, which runs only while something changes. */
-import { Scene, type Vector3, WebGLRenderer } from "three";
-import { Problem } from "../format/problem";
-import { setFrustum } from "../select/frustum";
-import type { View } from "../select/screenError";
+import { Scene, type Vector3, type WebGLRenderer } from "three";
 import type { Asset } from "../stream/asset";
 import type { NodeAt, Streamer } from "../stream/streamer";
 import { ErrorTarget } from "./adapt";
 import { Background, type BackgroundColours } from "./background";
 import { MAX_PIXEL_RATIO } from "./device";
-import { type Frame, frameOf } from "./frame";
+import { type Frame, frameOf, halfBoxOf } from "./frame";
 import { Layer } from "./layer";
 import { makeMaterials } from "./material";
 import { type CameraState, Navigation } from "./navigation";
 import { Picker } from "./picking";
+import { makeRenderer } from "./renderer";
 import { SphereLines } from "./spheres";
+import { viewOf } from "./view";
 
 export interface StageOptions {
   readonly errorPx: number;
@@ -238,7 +237,7 @@ export class Stage {
     this.errorPx = 0;
     visible.forEach((layer, i) => {
       const share = visible.length - i;
-      const view = this.#viewOf(layer);
+      const view = viewOf(this.navigation.camera, this.canvas.height, layer.frame, layer.asset);
       layer.select(view, { errorPx, triangleBudget: triangles / share, byteBudget: bytes / share });
       const { selection } = layer;
       triangles -= selection.triangles;
@@ -251,25 +250,6 @@ export class Stage {
     });
     if (visible.length > 1) wanted.sort((a, b) => b.key - a.key);
     streamer.want(wanted);
-  }
-
-  /** The camera in the layer's unit, relative to its origin. */
-  #viewOf(layer: Layer): View {
-    const { camera } = this.navigation;
-    const { frame, asset } = layer;
-    const e = camera.matrixWorld.elements;
-    const { origin } = asset.info;
-    const eye = [0, 1, 2].map((a) => e[12 + a]! / frame.scale + frame.centre[a]! - origin[a]!) as [
-      number,
-      number,
-      number,
-    ];
-    const tanY = Math.tan((camera.fov * Math.PI) / 360);
-    const near = camera.near / frame.scale;
-    const planes = new Float64Array(20);
-    const axis = (i: number): [number, number, number] => [e[4 * i]!, e[4 * i + 1]!, e[4 * i + 2]!];
-    setFrustum(planes, eye, axis(0), axis(1), axis(2), tanY * camera.aspect, tanY, near);
-    return { eye, near, planes, pixelsPerRadian: this.canvas.height / (2 * tanY) };
   }
 
   #render(): void {
@@ -360,41 +340,4 @@ export class Stage {
     this.options.onRestored();
     this.invalidate();
   }
-}
-
-/** @throws Problem if the browser has no WebGL2. */
-function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
-  const sentence =
-    "This browser does not give WebGL2, which the picture needs. Try a current browser, or switch hardware acceleration on.";
-  const probe = document.createElement("canvas").getContext("webgl2");
-  if (!probe) throw new Problem("webgl", sentence);
-  // Where the processor draws, four samples a pixel cost four times as much; smooth motion is worth more.
-  const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(rendererOf(probe));
-  probe.getExtension("WEBGL_lose_context")?.loseContext(); // browsers allow few contexts at a time
-  try {
-    return new WebGLRenderer({ canvas, antialias: !isSoftware, powerPreference: "high-performance" });
-  } catch {
-    throw new Problem("webgl", sentence);
-  }
-}
-
-/** The name of the graphics; some browsers give it only by an extension. */
-function rendererOf(context: WebGL2RenderingContext): string {
-  const name = String(context.getParameter(context.RENDERER));
-  if (!name.startsWith("WebKit")) return name;
-  const extension = context.getExtension("WEBGL_debug_renderer_info");
-  return extension ? String(context.getParameter(extension.UNMASKED_RENDERER_WEBGL)) : name;
-}
-
-function halfBoxOf(assets: readonly Asset[], frame: Frame): [number, number, number] {
-  const half: [number, number, number] = [0, 0, 0];
-  for (const { info } of assets) {
-    for (let axis = 0; axis < 3; axis++) {
-      for (const corner of info.box) {
-        const at = info.origin[axis]! + info.step * corner[axis]! - frame.centre[axis]!;
-        half[axis] = Math.max(half[axis]!, Math.abs(at) * frame.scale);
-      }
-    }
-  }
-  return half;
 }
