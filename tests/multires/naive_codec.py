@@ -44,7 +44,7 @@ class Tables:
         rows = [[signed(next(data), 8) for _ in range(4)] for _ in range(80)]
         self.weights = [rows[16 * kind : 16 * kind + 16] for kind in range(5)]
         self.contexts = []
-        while len(self.contexts) < 1260:
+        while len(self.contexts) < 940:
             table, shift = next(data), next(data)
             self.contexts += [(table, shift)] * varint(data)
         self.slots = []
@@ -322,13 +322,13 @@ def read_positions(read, region, n, coarse):
         normal = [signed(x + y, 64) for x, y in zip(cross(to_b, to_o), cross(*side), strict=True)]
         c = 0
         if coarse:
-            was_coarse = int(read.value(1258 + was_coarse, "b") != 0)
+            was_coarse = int(read.value(938 + was_coarse, "b") != 0)
             c = coarse * was_coarse
         prediction = [(x + ((1 << c) >> 1)) >> c for x in prediction]
         size >>= c
         r = read.value(442 + 64 * degrees[2] + scale(size))
-        s = read.value(762 + 64 * degrees[2] + scale(size + 4 * abs(r)), "b")
-        t = read.value(1082 + scale(size + 16 * (abs(r) + abs(s))))
+        s = read.value(442 + 64 * degrees[2] + scale(size), "b")
+        t = read.value(762 + scale(size))
         reals = [float(x) for x in normal]
         k = max(range(3), key=lambda axis: abs(reals[axis]))
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -371,8 +371,8 @@ def read_normals(read, region, positions):
     previous = 0
     for i, pair in enumerate(normals):
         e = 32 if i in region.edge else 0
-        u = read.value(1194 + e + small(previous))
-        v = read.value(1210 + e + small(abs(u)), "b")
+        u = read.value(874 + e + small(previous))
+        v = read.value(890 + e + small(abs(u)), "b")
         previous = abs(u) + abs(v)
         normals[i] = [min(max(x + d, -k - 1), k) for x, d in zip(pair, (u, v), strict=True)]
     return normals
@@ -388,9 +388,9 @@ def read_colours(read, region, n):
             contrast = abs(a[0] - b[0])
         else:
             prediction = sums[-1] if i else [0, 0, 0]
-        y = read.value(1146 + small(contrast))
-        o = read.value(1162 + small(abs(y)), "b")
-        g = read.value(1178 + small(abs(o) + (abs(y) >> 1)))
+        y = read.value(826 + small(contrast))
+        o = read.value(842 + small(abs(y)), "b")
+        g = read.value(858 + small(abs(o) + (abs(y) >> 1)))
         y, o, g = (signed(p + d, 32) for p, d in zip(prediction, (y, o, g), strict=True))
         sums.append([y, o, g])
         middle = y - (g >> 1)

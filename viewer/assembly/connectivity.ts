@@ -146,6 +146,7 @@ export function connectivity(firstState: u32, firstPlace: usize): bool {
   let face = faces;
   let state = firstState;
   let place = firstPlace;
+  let isDue = false;
   let vertices: u32 = 0;
   let slotsUsed: u32 = 0;
   let top: usize = stack;
@@ -215,10 +216,9 @@ export function connectivity(firstState: u32, firstPlace: usize): bool {
       slots + (load<u32>(choices + ((<usize>context) << 2)) & ~15) + ((<usize>(state & SLOT_MASK)) << 2),
     );
     state = advance(entry, state);
-    if (state < LOW) {
-      state = (state << 16) | load<u16>(place);
-      place += 2;
-    }
+    isDue = state < LOW;
+    state = select<u32>((state << 16) | load<u16>(place), state, isDue);
+    place += (<usize>isDue) << 1;
     last = entry & 0xff;
     if (last == BOUNDARY) {
       kind = kindAfter(kind, last);

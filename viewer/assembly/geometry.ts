@@ -4,7 +4,6 @@
 import {
   ACROSS_AT,
   ALONG_AT,
-  ASIDE_AT,
   COARSE_AT,
   DEGREES,
   ESCAPE,
@@ -116,6 +115,7 @@ export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, first
   let stateA = firstA;
   let stateB = firstB;
   let place = firstPlace;
+  let isDue = false;
   let wasCoarse: u32 = 0;
   for (let v: u32 = 0; v < vertices; v++, position += 12, corner += 24) {
     if (place > end) return false;
@@ -180,13 +180,16 @@ export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, first
       size >>= c;
     }
 
-    let choice = load<u32>(choices + ((<usize>(ALONG_AT + d * SCALES + scale(size))) << 2));
-    let entry = load<u32>(slots + (choice & ~15) + ((<usize>(stateA & SLOT_MASK)) << 2));
+    // Both symbols of one table, then the third: none waits for another's value.
+    const e = scale(size);
+    const choice = load<u32>(choices + ((<usize>(ALONG_AT + d * SCALES + e)) << 2));
+    const choiceQ = load<u32>(choices + ((<usize>(ACROSS_AT + e)) << 2));
+    const table = slots + (choice & ~15);
+    let entry = load<u32>(table + ((<usize>(stateA & SLOT_MASK)) << 2));
     stateA = advance(entry, stateA);
-    if (stateA < LOW) {
-      stateA = (stateA << 16) | load<u16>(place);
-      place += 2;
-    }
+    isDue = stateA < LOW;
+    stateA = select<u32>((stateA << 16) | load<u16>(place), stateA, isDue);
+    place += (<usize>isDue) << 1;
     let symbol = entry & 0xff;
     let r = <i64>symbol - MIDDLE;
     if (symbol == ESCAPE || (choice & 15) != 0) {
@@ -195,13 +198,11 @@ export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, first
       place = place_;
     }
 
-    choice = load<u32>(choices + ((<usize>(ASIDE_AT + d * SCALES + scale(size + 4 * absolute(r)))) << 2));
-    entry = load<u32>(slots + (choice & ~15) + ((<usize>(stateB & SLOT_MASK)) << 2));
+    entry = load<u32>(table + ((<usize>(stateB & SLOT_MASK)) << 2));
     stateB = advance(entry, stateB);
-    if (stateB < LOW) {
-      stateB = (stateB << 16) | load<u16>(place);
-      place += 2;
-    }
+    isDue = stateB < LOW;
+    stateB = select<u32>((stateB << 16) | load<u16>(place), stateB, isDue);
+    place += (<usize>isDue) << 1;
     symbol = entry & 0xff;
     let s = <i64>symbol - MIDDLE;
     if (symbol == ESCAPE || (choice & 15) != 0) {
@@ -210,17 +211,15 @@ export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, first
       place = place_;
     }
 
-    choice = load<u32>(choices + ((<usize>(ACROSS_AT + scale(size + 16 * (absolute(r) + absolute(s))))) << 2));
-    entry = load<u32>(slots + (choice & ~15) + ((<usize>(stateA & SLOT_MASK)) << 2));
+    entry = load<u32>(slots + (choiceQ & ~15) + ((<usize>(stateA & SLOT_MASK)) << 2));
     stateA = advance(entry, stateA);
-    if (stateA < LOW) {
-      stateA = (stateA << 16) | load<u16>(place);
-      place += 2;
-    }
+    isDue = stateA < LOW;
+    stateA = select<u32>((stateA << 16) | load<u16>(place), stateA, isDue);
+    place += (<usize>isDue) << 1;
     symbol = entry & 0xff;
     let q = <i64>symbol - MIDDLE;
-    if (symbol == ESCAPE || (choice & 15) != 0) {
-      q = finish(symbol, choice & 15, stateA, place);
+    if (symbol == ESCAPE || (choiceQ & 15) != 0) {
+      q = finish(symbol, choiceQ & 15, stateA, place);
       stateA = state_;
       place = place_;
     }
@@ -236,10 +235,10 @@ export function geometry(used: u32, coarse: u32, firstA: u32, firstB: u32, first
     const cz = <f64>(bx * oy - by * ox + nx * py - ny * px);
     const isX = abs(cx) >= abs(cy) && abs(cx) >= abs(cz);
     const isY = !isX && abs(cy) >= abs(cz);
-    const e = select(cy, select(cz, cx, isY), isX);
-    const f = select(cz, select(cx, cy, isY), isX);
-    const g = select(cx, select(cy, cz, isY), isX);
-    if (g != 0) q += <i64>floor(0.5 - (e * <f64>r + f * <f64>s) / g);
+    const alongI = select(cy, select(cz, cx, isY), isX);
+    const alongJ = select(cz, select(cx, cy, isY), isX);
+    const alongK = select(cx, select(cy, cz, isY), isX);
+    if (alongK != 0) q += <i64>floor(0.5 - (alongI * <f64>r + alongJ * <f64>s) / alongK);
     x += select(q, select(s, r, isY), isX);
     y += select(r, select(q, s, isY), isX);
     z += select(s, select(r, q, isY), isX);

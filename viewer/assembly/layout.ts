@@ -41,8 +41,7 @@ export const MIDDLE: i64 = 31;
 
 export const WALK_AT: u32 = CODE_CONTEXTS;
 export const ALONG_AT: u32 = WALK_AT + 1;
-export const ASIDE_AT: u32 = ALONG_AT + SCALES * DEGREES;
-export const ACROSS_AT: u32 = ASIDE_AT + SCALES * DEGREES;
+export const ACROSS_AT: u32 = ALONG_AT + SCALES * DEGREES;
 export const COLOUR_AT: u32 = ACROSS_AT + SCALES;
 export const NORMAL_AT: u32 = COLOUR_AT + 3 * SMALL_SCALES;
 export const COARSE_AT: u32 = NORMAL_AT + 4 * SMALL_SCALES;

@@ -24,7 +24,6 @@ from ._kernels_geometry import across, degree_class, frame, predict, scale, wrap
 from ._kernels_layout import (
     ACROSS_AT,
     ALONG_AT,
-    ASIDE_AT,
     AT_DEAD,
     BOUNDARY,
     COARSE_AT,
@@ -252,11 +251,10 @@ def geometry(
         half = (1 << c) >> 1
         x, y, z, size = (x + half) >> c, (y + half) >> c, (z + half) >> c, size >> c
         d = degree_class(degree[v])
-        r, a, at = _value(ALONG_AT + d * SCALES + scale(size), slots, table_of, shift_of, a, words, at)
-        context = ASIDE_AT + d * SCALES + scale(size + 4 * abs(r))
-        s, b, at = _value(context, slots, table_of, shift_of, b, words, at)
-        context = ACROSS_AT + scale(size + 16 * (abs(r) + abs(s)))
-        q, a, at = _value(context, slots, table_of, shift_of, a, words, at)
+        e = scale(size)
+        r, a, at = _value(ALONG_AT + d * SCALES + e, slots, table_of, shift_of, a, words, at)
+        s, b, at = _value(ALONG_AT + d * SCALES + e, slots, table_of, shift_of, b, words, at)
+        q, a, at = _value(ACROSS_AT + e, slots, table_of, shift_of, a, words, at)
         k, n0, n1, n2 = frame(cx, cy, cz)
         q += across(n0, n1, n2, r, s)
         is_x, is_y = k == 0, k == 1

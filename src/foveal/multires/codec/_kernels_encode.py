@@ -14,7 +14,6 @@ from ._kernels_geometry import across, degree_class, frame, predict, scale, wrap
 from ._kernels_layout import (
     ACROSS_AT,
     ALONG_AT,
-    ASIDE_AT,
     COARSE_AT,
     CODE_AT,
     COLOUR_AT,
@@ -91,9 +90,12 @@ def position_events(positions, degree, corners, vertices, weights, coarse, conte
         r, s = wrap(r), wrap(s)
         t = wrap(t - across(n0, n1, n2, r, s))
         d = degree_class(degree[v])
-        contexts[count] = ALONG_AT + d * SCALES + scale(size)
-        contexts[count + 1] = (ASIDE_AT + d * SCALES + scale(size + 4 * abs(r))) | STATE_B
-        contexts[count + 2] = ACROSS_AT + scale(size + 16 * (abs(r) + abs(s)))
+        # One scale for all three, so that a decoder need not wait for one to read the next: 0.5 % larger
+        # than with scales that know the residuals before, and positions a quarter faster.
+        e = scale(size)
+        contexts[count] = ALONG_AT + d * SCALES + e
+        contexts[count + 1] = (ALONG_AT + d * SCALES + e) | STATE_B
+        contexts[count + 2] = ACROSS_AT + e
         values[count], values[count + 1], values[count + 2] = r, s, t
         count += 3
     return count
