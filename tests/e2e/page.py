@@ -54,9 +54,12 @@ PIXELS = """async (base64) => {
 
 def picture(page):
     """(h, w, 3) uint8: the canvas as it is on the screen, without the page's panels."""
-    page.add_style_tag(content="#label, #bar, #toast, #alerts, #progress { visibility: hidden !important }")
+    style = page.add_style_tag(
+        content="#label, #bar, #toast, #alerts, #progress { visibility: hidden !important }"
+    )
     page.evaluate("new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
     encoded = base64.b64encode(page.screenshot()).decode()
+    style.evaluate("style => style.remove()")
     width, height, data = page.evaluate(PIXELS, encoded)
     pixels = np.frombuffer(base64.b64decode(data), dtype=np.uint8).reshape(height, width, 4)
     return pixels[..., :3].copy()
