@@ -230,6 +230,12 @@ def _value(context, slots, table_of, shift_of, x, words, at):
 
 
 @kernel
+def _rare_value(context, slots, table_of, shift_of, x, words, at):
+    """`_value` as a call: slower, but quick to compile."""
+    return _value(context, slots, table_of, shift_of, x, words, at)
+
+
+@kernel
 def geometry(
     words, a, b, at, slots, table_of, shift_of, weights, coarse, corners, degree, vertices, positions
 ):
@@ -245,7 +251,7 @@ def geometry(
         x, y, z, cx, cy, cz, size = predict(positions, degree, v, corners[v], weights)
         c = 0
         if coarse > 0:
-            flag, b, at = _value(COARSE_AT + was_coarse, slots, table_of, shift_of, b, words, at)
+            flag, b, at = _rare_value(COARSE_AT + was_coarse, slots, table_of, shift_of, b, words, at)
             was_coarse = int(flag != 0)
             c = coarse * was_coarse
         half = (1 << c) >> 1
@@ -270,9 +276,9 @@ def normals(words, a, b, at, slots, table_of, shift_of, is_edge, most, pairs):
     before = 0
     for v in range(len(pairs)):
         context = NORMAL_AT + (2 * SMALL_SCALES if is_edge[v] else 0)
-        u, a, at = _value(context + small_scale(before), slots, table_of, shift_of, a, words, at)
+        u, a, at = _rare_value(context + small_scale(before), slots, table_of, shift_of, a, words, at)
         context += SMALL_SCALES + small_scale(abs(u))
-        w, b, at = _value(context, slots, table_of, shift_of, b, words, at)
+        w, b, at = _rare_value(context, slots, table_of, shift_of, b, words, at)
         before = abs(u) + abs(w)
         # A valid patch has nothing to clip; damaged ones must still give pairs that mean something.
         pairs[v, 0] = min(max(pairs[v, 0] + u, -most - 1), most)
@@ -293,11 +299,11 @@ def colours(words, a, b, at, slots, table_of, shift_of, corners, vertices, ycc, 
             contrast = abs(np.int64(ycc[i, 0]) - ycc[j, 0])
         elif v > 0:
             y, o, g = np.int64(ycc[v - 1, 0]), np.int64(ycc[v - 1, 1]), np.int64(ycc[v - 1, 2])
-        r, a, at = _value(COLOUR_AT + small_scale(contrast), slots, table_of, shift_of, a, words, at)
+        r, a, at = _rare_value(COLOUR_AT + small_scale(contrast), slots, table_of, shift_of, a, words, at)
         context = COLOUR_AT + SMALL_SCALES + small_scale(abs(r))
-        s, b, at = _value(context, slots, table_of, shift_of, b, words, at)
+        s, b, at = _rare_value(context, slots, table_of, shift_of, b, words, at)
         context = COLOUR_AT + 2 * SMALL_SCALES + small_scale(abs(s) + (abs(r) >> 1))
-        q, a, at = _value(context, slots, table_of, shift_of, a, words, at)
+        q, a, at = _rare_value(context, slots, table_of, shift_of, a, words, at)
         y, o, g = wrap(y + r), wrap(o + s), wrap(g + q)
         ycc[v, 0], ycc[v, 1], ycc[v, 2] = y, o, g
         middle = y - (g >> 1)
