@@ -101,8 +101,8 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
             degree[head], degree[tail], last, int(state[nxt] == DEAD), int(state[prv] == DEAD)
         )
         last, a, at = symbol(slots, np.int64(table_of[CODE_AT + context]), a, PROBABILITY_BITS, words, at)
+        corners[vertices - 1, 5] = kind = kind_after(kind, last)
         if last == BOUNDARY:
-            corners[vertices - 1, 5] = kind = kind_after(kind, last)
             is_edge[tail] = is_edge[head] = 1
             gate = close_edge(following, previous, state, gate)
         else:
@@ -113,7 +113,6 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
             if last == RIGHT:
                 if nxt == gate or state[nxt] != LIVE:
                     return -1, a, at
-                corners[vertices - 1, 5] = kind = kind_after(kind, last)
                 beyond = following[nxt]
                 v = origin[beyond]
                 state[nxt] = FREE
@@ -124,7 +123,6 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
                 v = vertices
                 if v >= most:
                     return -1, a, at
-                corners[v - 1, 5] = kind_after(kind, last)
                 is_alive = state[nxt] == LIVE and nxt != gate
                 kind = FRESH if is_alive else AT_DEAD
                 corners[v, 0] = tail
@@ -138,7 +136,6 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
             elif last == LEFT:
                 if prv == gate or state[prv] != LIVE:
                     return -1, a, at
-                corners[vertices - 1, 5] = kind = kind_after(kind, last)
                 v = origin[prv]
                 state[gate] = FREE
                 following[prv] = nxt
@@ -150,12 +147,10 @@ def connectivity(words, a, at, slots, table_of, faces, corners, degree, is_edge,
                     return -1, a, at
                 if (nxt == gate) | (prv == gate) | (nxt == prv):
                     return -1, a, at
-                corners[vertices - 1, 5] = kind = kind_after(kind, last)
                 v = origin[prv]
                 state[gate] = state[nxt] = state[prv] = FREE
                 gate = -1
             else:
-                corners[vertices - 1, 5] = kind = kind_after(kind, last)
                 met = -1
                 if last == MET:
                     back, a, at = number(a, words, at)
