@@ -63,7 +63,9 @@ describe("queue", () => {
     const { queue, asked, failed } = bench();
     queue.want([want(1, 0, 100), want(5, 5000, 5100)]);
     queue.want([want(5, 5000, 5100), want(7, 7000, 7100)]);
+    expect(queue.inFlight).toBe(1);
     await settle();
+    expect(queue.inFlight).toBe(2);
     expect(asked.map(({ signal }) => signal.aborted)).toEqual([true, false, false]);
     expect(asked[2]!.start).toBe(7000);
     expect(failed).toEqual([]);

@@ -53,9 +53,11 @@ export class RequestQueue {
     this.#pause = options.pause ?? ((ms) => new Promise((resolve) => setTimeout(resolve, ms)));
   }
 
-  /** Requests under way. */
+  /** Requests under way; not those given up, of whose end nobody is told. */
   get inFlight(): number {
-    return this.#flights.size;
+    let count = 0;
+    for (const flight of this.#flights) if (!flight.abort.signal.aborted) count++;
+    return count;
   }
 
   has(key: number): boolean {
