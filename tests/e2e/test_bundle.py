@@ -6,9 +6,6 @@ from e2e.page import stats
 from foveal.scene import scene_of
 from foveal.server import start
 
-#: Addresses that name things and are never fetched.
-NAMES = ("http://www.w3.org/", "https://github.com/", "https://threejs.org/", "https://jcgt.org/", "https://")
-
 
 def test_bundle_names_no_host_to_fetch_from(viewer_folder):
     page = (viewer_folder / "index.html").read_text()
