@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
+from foveal.base.files import refuse_unwritable
 from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import Executor
 from foveal.mesh.trimesh import TriMesh
@@ -130,6 +131,7 @@ def build(
     output = Path(output)
     if output.suffix.lower() != ".fov":
         raise FovealError(f"{output}: the name must end in .fov.")
+    refuse_unwritable(output)
     return build_file(
         mesh,
         output,
@@ -243,6 +245,8 @@ def export(
     """
     from foveal.scene.export import export as write
 
+    if output is not None:
+        refuse_unwritable(output)
     with _file_of(source, progress) as path:
         return write(path, output, error=error, triangles=triangles, progress=progress)
 
@@ -293,6 +297,8 @@ def render(
     from foveal.scene.render import frame, read_camera
     from foveal.scene.render import render as draw
 
+    if output is not None:
+        refuse_unwritable(output)
     with _file_of(source, progress) as path:
         scene = load(path, progress=progress)
         if camera is None:

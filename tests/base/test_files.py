@@ -8,7 +8,7 @@ import time
 import pytest
 
 from foveal.base.errors import FovealError
-from foveal.base.files import scratch, whole_file, whole_folder
+from foveal.base.files import refuse_unwritable, scratch, whole_file, whole_folder
 
 
 def names(folder):
@@ -38,7 +38,7 @@ def test_a_block_that_fails_leaves_the_old_file(tmp_path):
 def test_a_killed_writer_leaves_nothing_whole_and_the_next_run_sweeps(tmp_path, what):
     target = tmp_path if what == "scratch" else tmp_path / "out"
     code = (
-        f"from foveal.base.files import {what}; import time\n"
+        f"from foveal.base.files import refuse_unwritable, {what}; import time\n"
         f"with {what}(r'{target}') as x:\n"
         f"    print('in', flush=True); time.sleep(60)\n"
     )
@@ -84,4 +84,20 @@ def test_places_that_cannot_be_written_get_a_sentence(tmp_path):
     with pytest.raises(FovealError, match="this is a file"), whole_folder(tmp_path / "file"):
         pass
     with pytest.raises(FovealError, match="cannot be written"), whole_file(tmp_path / "file" / "below"):
+        pass
+
+
+def test_what_cannot_be_written_is_said_beforehand_and_nothing_is_made(tmp_path):
+    refuse_unwritable(tmp_path / "new" / "deep" / "a.bin")
+    (tmp_path / "old.bin").write_bytes(b"old")
+    refuse_unwritable(tmp_path / "old.bin")
+    refuse_unwritable(tmp_path, is_folder=True)
+    assert names(tmp_path) == ["old.bin"]
+    with pytest.raises(FovealError, match="cannot be written here"):
+        refuse_unwritable(tmp_path / "old.bin" / "a.bin")
+    with pytest.raises(FovealError, match="cannot be written here"):
+        refuse_unwritable(tmp_path / "old.bin" / "a", is_folder=True)
+    with pytest.raises(FovealError, match="this is a folder"):
+        refuse_unwritable(tmp_path)
+    with pytest.raises(FovealError, match="cannot be written here"), whole_folder(tmp_path / "old.bin" / "a"):
         pass

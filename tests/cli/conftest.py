@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from foveal.base.jit import cache_folder
-from foveal.cli.main import app
+from foveal.cli.app import app
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import bumpy_sphere
 

@@ -78,7 +78,7 @@ def test_check(run, ball, ball_mesh, tmp_path):
     answer = run("check", tmp_path / "broken.fov")
     assert answer.exit_code == 1
     assert "broken.fov" in answer.stderr
-    assert run("check", ball, "--original", ball_mesh).exit_code == 1
+    assert run("check", ball, "--original", ball_mesh).exit_code == 2
 
 
 def test_export(run, ball, tmp_path):
@@ -86,7 +86,7 @@ def test_export(run, ball, tmp_path):
     assert facts["triangles"] == 5120 == len(read_mesh(tmp_path / "all.ply").faces)
     facts = result(run("export", ball, "-o", tmp_path / "all.glb", "--error", "0.0001", "--json"))
     assert len(read_mesh(tmp_path / "all.glb").faces) == facts["triangles"]
-    assert run("export", ball, "-o", tmp_path / "x.ply", "--error", "1", "--triangles", "9").exit_code == 1
+    assert run("export", ball, "-o", tmp_path / "x.ply", "--error", "1", "--triangles", "9").exit_code == 2
 
 
 def test_render(run, ball, tmp_path):

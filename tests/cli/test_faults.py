@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+from foveal.cli import main
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere
 
@@ -89,12 +90,36 @@ def test_a_mistyped_command_is_guessed(run):
     assert "build" in run("biuld", "x.ply").stderr
 
 
-def test_options_that_exclude_each_other(run, ball_mesh, tmp_path):
-    assert_one_sentence(
-        run("build", ball_mesh, "-o", tmp_path / "a.fov", "--bits", "9", "--step", "1"), "--step"
-    )
-    assert_one_sentence(run("build", ball_mesh, "-o", tmp_path / "a.ply"), ".fov")
-    assert_one_sentence(run("build", ball_mesh, "-o", tmp_path / "a.fov", "--step", "-1"))
+@pytest.mark.parametrize(
+    ("words", "part"),
+    [
+        (["build", "-o", "a.fov", "--bits", "9", "--step", "1"], "--step"),
+        (["build", "-o", "a.fov", "--step", "-1"], "--step"),
+        (["build", "-o", "a.fov", "--step", "nan"], "--step"),
+        (["build", "-o", "a.ply"], ".fov"),
+        (["export", "-o", "a.stl"], ".glb"),
+        (["export", "-o", "a.ply", "--error", "1", "--triangles", "9"], "--triangles"),
+        (["render", "-o", "a.jpg"], ".png"),
+        (["render", "-o", "a.png", "--size", "0x9"], "--size"),
+        (["check", "--original", "a.ply"], "--original"),
+    ],
+)
+def test_options_that_do_not_go_together_exit_with_2_and_are_named(run, ball, words, part):
+    answer = run(words[0], ball, *words[1:])
+    assert (answer.exit_code, answer.stdout) == (2, "")
+    assert part in answer.stderr
+
+
+@pytest.mark.parametrize(
+    ("command", "name"), [("build", "a.fov"), ("export", "a.ply"), ("render", "a.png"), ("publish", "a")]
+)
+def test_a_place_that_cannot_be_written_is_said_before_any_work(run, ball_mesh, tmp_path, command, name):
+    (tmp_path / "file").write_text("this is no folder")
+    answer = run(command, ball_mesh, "-o", tmp_path / "file" / name)
+    if command != "publish":  # where the viewer is not built, it says that first
+        assert_one_sentence(answer, "cannot be written here")
+    assert answer.exit_code == 1
+    assert "..." not in answer.stderr
 
 
 def test_debug_shows_where(run, tmp_path):
@@ -160,6 +185,21 @@ def test_ctrl_c_leaves_nothing(interrupted, tmp_path):
     assert not list(tmp_path.glob("out/*"))
     assert not list(tmp_path.glob("out/.*"))
     assert not list((tmp_path / "tmp").iterdir())
+
+
+def test_ctrl_c_while_python_still_imports(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "foveal.cli.app", None)
+    with pytest.raises(ImportError):
+        main.run()
+
+    class Interrupting:
+        def __getattr__(self, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "foveal.cli.app", Interrupting())
+    with pytest.raises(SystemExit) as exit:
+        main.run()
+    assert (exit.value.code, capsys.readouterr()) == (130, ("", ""))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

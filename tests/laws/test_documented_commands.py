@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import typer
 
-from foveal.cli.main import app
+from foveal.cli.app import app
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

@@ -17,7 +17,7 @@ import psutil
 
 from .errors import FovealError
 
-__all__ = ["scratch", "whole_file", "whole_folder"]
+__all__ = ["refuse_unwritable", "scratch", "whole_file", "whole_folder"]
 
 
 def _sweep(folder: Path, pattern: str) -> None:
@@ -42,6 +42,33 @@ def _part(path: Path) -> Path:
     return path.with_name(f".{path.name}.{os.getpid()}.part")
 
 
+def refuse_unwritable(path: str | os.PathLike[str], *, is_folder: bool = False) -> None:
+    """Say before any work that `whole_file`, or `whole_folder`, could not write `path`.
+
+    Nothing is made, nor are folders on the way.
+
+    Raises
+    ------
+    FovealError
+        If the nearest folder above `path` does not let files be made in it, or `path` is a folder and
+        should be a file.
+    """
+    path = Path(path)
+    if path.is_dir() and not is_folder:
+        raise FovealError(f"{path}: this is a folder; name a file to write.")
+    folder = next(parent for parent in path.absolute().parents if parent.exists())
+    try:
+        # Tried, not asked: os.access knows nothing of what is mounted to be read only.
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def _unwritable(path: Path, error: OSError) -> FovealError:
+    return FovealError(f"{path}: cannot be written here ({error.strerror}). Choose another place.")
+
+
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """Open `path` for writing such that it appears by rename when the block ends without an error.
@@ -56,9 +83,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         part = _part(path)
         stream = part.open("w+b")
     except OSError as error:
-        raise FovealError(
-            f"{path}: cannot be written here ({error.strerror}). Choose another place."
-        ) from error
+        raise _unwritable(path, error) from error
     try:
         with stream:
             yield stream
@@ -80,9 +105,12 @@ def whole_folder(path: str | os.PathLike[str], *, force: bool = False) -> Iterat
         raise FovealError(f"{path}: this is a file; name a folder to write.")
     if path.exists() and any(path.iterdir()) and not force:
         raise FovealError(f"{path}: the folder is not empty. Use --force to replace it.")
-    part = _part(path)
-    shutil.rmtree(part, ignore_errors=True)
-    part.mkdir()
+    try:
+        part = _part(path)
+        shutil.rmtree(part, ignore_errors=True)
+        part.mkdir()
+    except OSError as error:
+        raise _unwritable(path, error) from error
     try:
         yield part
         if path.exists():

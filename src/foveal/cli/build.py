@@ -61,7 +61,7 @@ def build(
     if output is None:
         output = file.with_name(f"{file.name.removesuffix('.gz').rpartition('.')[0] or file.name}.fov")
     if output.suffix.lower() != ".fov":
-        raise FovealError(f"{output}: the name must end in .fov.")
+        raise typer.BadParameter(f"{output}: the name must end in .fov.", param_hint="--output")
     if file.suffix.lower() == ".json":
         raise FovealError(f"{file}: a scene.json is not built; build its meshes one by one.")
     if output.exists() and file.exists() and output.samefile(file):
@@ -97,7 +97,8 @@ def _print(output: Path, report: "BuildReport", seconds: float) -> None:
     print(f"{output}: {counts}, in {seconds:.1f} s")
     bits = 8 * report.bytes / max(1, repairs.vertices)
     print(f"  size         {report.bytes:,} bytes, {bits:.2f} bits a vertex")
-    print(f"  patches      {report.patches:,} in {report.nodes:,} nodes, {len(report.levels)} levels")
+    levels = f"{len(report.levels)} level{'' if len(report.levels) == 1 else 's'}"
+    print(f"  patches      {report.patches:,} in {report.nodes:,} nodes, {levels}")
     print(f"  grid step    {report.step:.6g}")
     if repairs.nonmanifold_edges or repairs.boundary_edges:
         odd = f"{repairs.boundary_edges:,} open, {repairs.nonmanifold_edges:,} of more than two triangles"

@@ -30,11 +30,10 @@ def check(
 
     Checksums, structure and every patch. Exits with 1 if anything is wrong.
     """
-    from foveal.base.errors import FovealError
     from foveal.scene.check import check as verify
 
     if original is not None and not deep:
-        raise FovealError("--original is for --deep. Add --deep.")
+        raise typer.BadParameter("it is for --deep. Add that.", param_hint="--original")
     with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
         facts: dict[str, Any] = verify(file, deep=deep, original=original, progress=progress)
     if json:

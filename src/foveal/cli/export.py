@@ -40,11 +40,16 @@ def export(
     Without --error and --triangles every triangle is written. GLB is y up and float32 about a translation;
     PLY keeps the coordinates as they are.
     """
-    from foveal.base.errors import FovealError
     from foveal.scene.export import export as write
 
     if error is not None and triangles is not None:
-        raise FovealError("--error and --triangles are two ways to say how fine. Give one of them.")
+        raise typer.BadParameter(
+            "it says in another way what --error says. Give one.", param_hint="--triangles"
+        )
+    if output.suffix.lower() not in (".ply", ".glb"):
+        raise typer.BadParameter(
+            f"{output}: the name must end in .ply or .glb, which says the format.", param_hint="--output"
+        )
     refuse_existing(output, force=force)
     with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
         mesh = write(

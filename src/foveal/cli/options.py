@@ -61,7 +61,7 @@ def parse_picture_size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"\s*([0-9]{1,5})\s*[x×]\s*([0-9]{1,5})\s*", text.lower())
     if match is None or not 1 <= int(match[1]) <= 16384 or not 1 <= int(match[2]) <= 16384:
         raise typer.BadParameter(
-            f"{text!r} is not a size in pixels up to 16384; write for instance 1280x720."
+            f"{text!r} is not a size in pixels up to 16384; write for instance 1280x720.", param_hint="--size"
         )
     return int(match[1]), int(match[2])
 

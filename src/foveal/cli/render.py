@@ -56,11 +56,9 @@ def render(
 
     Needs no GPU and no display.
     """
-    from foveal.base.errors import FovealError
-
     wanted = None if size is None else parse_picture_size(size)
     if output.suffix.lower() != ".png":
-        raise FovealError(f"{output}: the name must end in .png.")
+        raise typer.BadParameter(f"{output}: the name must end in .png.", param_hint="--output")
     refuse_existing(output, force=force)
 
     from foveal.raster import write_png

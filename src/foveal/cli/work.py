@@ -5,6 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from foveal.base.errors import FovealError
 from foveal.base.progress import Progress
 from foveal.base.tasks import Executor
@@ -51,7 +53,9 @@ def build_arguments(
     from foveal.scene.prepare import BuildOptions
 
     if bits is not None and step is not None:
-        raise FovealError("--bits and --step say the same thing in two ways. Give one of them.")
+        raise typer.BadParameter("it says in another way what --bits says. Give one.", param_hint="--step")
+    if step is not None and not 0 < step < float("inf"):
+        raise typer.BadParameter(f"a length above 0 is needed, got {step}.", param_hint="--step")
     return {
         "options": BuildOptions(bits=bits, step=step, normals=normals and normals.value, up=up and up.value),
         "memory_bytes": memory,
@@ -68,6 +72,9 @@ def refuse_missing(path: Path) -> None:
 
 
 def refuse_existing(path: Path, *, force: bool) -> None:
-    """Stop before any work if the output is there and may not be replaced."""
-    if path.exists() and not force:
+    """Stop before any work if the output is there and may not be replaced, or cannot be written."""
+    from foveal.base.files import refuse_unwritable
+
+    if path.exists() and not path.is_dir() and not force:
         raise FovealError(f"{path}: is there already. Use --force to replace it.")
+    refuse_unwritable(path)

@@ -1,7 +1,7 @@
 """The triangle mesh all rooms pass around: plain arrays, no behaviour beyond checking itself."""
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,8 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 from foveal.base.errors import FovealError
 
 __all__ = ["TriMesh"]
-
-Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,16 +54,16 @@ class TriMesh:
     ) -> "TriMesh":
         """Check arrays from outside and hold them as contiguous arrays of the right types.
 
+        Normals are made unit, or zero where they are not finite.
+
         Raises
         ------
         FovealError
-            In a sentence that begins with `name`: a wrong shape, NaN or infinite coordinates, an index
-            that is not a vertex, or no triangle at all.
+            In a sentence that begins with `name`: a wrong shape or type, NaN or infinite coordinates, an
+            index that is not a vertex, colours that are no bytes, or no triangle at all.
         """
-        points = np.ascontiguousarray(positions, dtype=np.float64)
+        points = _numbers("positions", positions, -1, name).astype(np.float64, copy=False)
         triangles = np.ascontiguousarray(faces)
-        if points.ndim != 2 or points.shape[1:] != (3,):
-            raise FovealError(f"{name}: positions must have shape (n, 3), got {points.shape}.")
         if triangles.ndim != 2 or triangles.shape[1:] != (3,) or triangles.dtype.kind not in "iu":
             raise FovealError(
                 f"{name}: faces must be integers of shape (m, 3), got {triangles.dtype} {triangles.shape}."
@@ -84,17 +82,45 @@ class TriMesh:
         return cls(
             points,
             triangles.astype(np.int32, copy=False),
-            _attribute("normals", normals, np.float32, len(points), name),
-            _attribute("colours", colours, np.uint8, len(points), name),
+            _normals(normals, len(points), name),
+            _colours(colours, len(points), name),
         )
 
 
-def _attribute(
-    what: str, values: ArrayLike | None, dtype: type[Scalar], count: int, name: str
-) -> NDArray[Scalar] | None:
+def _normals(values: ArrayLike | None, count: int, name: str) -> NDArray[np.float32] | None:
     if values is None:
         return None
-    array: NDArray[Scalar] = np.ascontiguousarray(values, dtype=dtype)
-    if array.shape != (count, 3):
-        raise FovealError(f"{name}: {what} must have shape ({count}, 3), got {array.shape}.")
-    return array
+    from .normals import unit_normals  # which knows meshes, so that it cannot come first
+
+    array = _numbers("normals", values, count, name).astype(np.float64)
+    # Those of a file are unit but for rounding, and stay as they are.
+    length = np.linalg.norm(array, axis=1, keepdims=True)
+    return np.where(abs(length - 1) < 1e-3, array, unit_normals(array)).astype(np.float32)
+
+
+def _colours(values: ArrayLike | None, count: int, name: str) -> NDArray[np.uint8] | None:
+    if values is None:
+        return None
+    array = _numbers("colours", values, count, name)
+    if not ((array >= 0) & (array <= 255) & (array == np.floor(array))).all():
+        raise FovealError(
+            f"{name}: colours must be whole numbers from 0 to 255. From 0 to 1, multiply by 255 and round."
+        )
+    return array.astype(np.uint8, copy=False)
+
+
+def _numbers(what: str, values: ArrayLike, count: int, name: str) -> NDArray[Any]:
+    """(count, 3), or of any length for -1, contiguous, of any real type."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of several lengths
+        raise FovealError(
+            f"{name}: {what} must have shape (n, 3), each row as long as the others."
+        ) from error
+    if array.dtype.kind not in "biuf":
+        raise FovealError(f"{name}: {what} must be real numbers, got {array.dtype}.")
+    if array.ndim != 2 or array.shape[1] != 3 or count not in (len(array), -1):
+        raise FovealError(
+            f"{name}: {what} must have shape ({'n' if count < 0 else count}, 3), got {array.shape}."
+        )
+    return np.ascontiguousarray(array)

@@ -1,11 +1,13 @@
 """Whether a `.fov`, or every file of a scene, is whole and true."""
 
+import dataclasses
 import os
 from pathlib import Path
 from typing import Any
 
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
+from foveal.mesh.trimesh import TriMesh
 
 from .prepare import refuse_missing
 from .scene import read_scene
@@ -30,7 +32,7 @@ def check(
     deep : bool
         Decode all and measure each stored error.
     original
-        The mesh to measure against; by default the finest level. For a `.fov` only.
+        The mesh file to measure against, with `deep`; by default the finest level. For a `.fov` only.
     progress : Progress
         Told of each stage.
 
@@ -54,11 +56,9 @@ def check(
     from foveal import multires
 
     if path.suffix.lower() == ".fov":
-        return {
-            "file": str(path),
-            "is_whole": True,
-            **_plain(multires.check(path, deep=deep, original=original)),
-        }
+        mesh = None if original is None else _read(Path(original))
+        report = multires.check(path, deep=deep, original=mesh, progress=progress)
+        return {"file": str(path), "is_whole": True, **dataclasses.asdict(report)}
     if original is not None:
         raise FovealError(
             f"{path}: an original can be given for a single .fov only. Check the files one by one."
@@ -67,9 +67,8 @@ def check(
     return {"file": str(path), "is_whole": True, "layers": layers}
 
 
-def _plain(report: object) -> dict[str, Any]:
-    import dataclasses
+def _read(original: Path) -> TriMesh:
+    from foveal.mesh.io import read_mesh
 
-    if dataclasses.is_dataclass(report) and not isinstance(report, type):
-        return dataclasses.asdict(report)
-    return dict(report) if isinstance(report, dict) else {}
+    refuse_missing(original)
+    return read_mesh(original)

@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from foveal.base.errors import FovealError
-from foveal.base.files import whole_folder
+from foveal.base.files import refuse_unwritable, whole_folder
 from foveal.base.progress import SILENT, Progress
 
 from .scene import Scene, asset_names, scene_json
@@ -76,7 +76,7 @@ def publish(
     files = viewer_files(viewer)
     names = asset_names(scene)
     total = sum(path.stat().st_size for path in names)
-    with whole_folder(folder, force=force) as part, progress.stage("copying", total) as stage:
+    with whole_folder(folder, force=force) as part, progress.stage("Copying", total) as stage:
         for name, source in files.items():
             target = part / name
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -105,6 +105,7 @@ def refuse_folder(folder: str | os.PathLike[str], /, *, force: bool = False) -> 
     if folder.exists() and not folder.is_dir():
         raise FovealError(f"{folder}: this is a file; name a folder to write.")
     if not folder.exists() or not any(folder.iterdir()):
+        refuse_unwritable(folder, is_folder=True)
         return
     if not force:
         raise FovealError(f"{folder}: the folder is not empty. Use --force to replace it.")
@@ -112,3 +113,4 @@ def refuse_folder(folder: str | os.PathLike[str], /, *, force: bool = False) -> 
         raise FovealError(
             f"{folder}: the folder was not made by 'foveal publish', so it is not replaced. Name another one."
         )
+    refuse_unwritable(folder, is_folder=True)

@@ -113,6 +113,8 @@ def source_from_mesh(mesh: TriMesh, /, *, name: str = "mesh", up: str = "y") -> 
     """
     if len(mesh.faces) == 0:
         raise FovealError(f"{name}: there is no triangle in it.")
+    if up not in ("x", "y", "z"):
+        raise ValueError(f'up must be "x", "y" or "z", got {up!r}')
     return _MeshInMemory(
         name=name,
         up=up,
