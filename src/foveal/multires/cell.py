@@ -9,7 +9,7 @@ from . import _kernels_cells as kernels
 from .bounds import deviation
 from .codec import Patch, quantise_normals
 from .partition import partition
-from .pieces import Piece, join, local_numbers, split
+from .pieces import Piece, is_proper, join, local_numbers, split
 from .simplify import incidence, simplify
 
 __all__ = ["CellResult", "CellTask", "SharedNormals", "work"]
@@ -125,40 +125,64 @@ def work(task: CellTask) -> CellResult:
     middle -= middle % task.snap
     local = (whole.positions - middle).astype(np.float64)
     patches, open_normals, shared_normals = _patches(task, whole, pieces, maps, local, locked)
+    piece, is_relaxed = _coarse(task, whole, local, middle, locked)
+    result = CellResult(
+        patches,
+        open_normals,
+        shared_normals,
+        piece,
+        float(piece.errors.max()),
+        np.minimum(whole.positions.min(axis=0), piece.positions.min(axis=0)),
+        np.maximum(whole.positions.max(axis=0), piece.positions.max(axis=0)),
+        len(whole.ids),
+        int(locked.sum()),
+        len(whole.faces),
+        is_relaxed,
+    )
+    if task.is_first:
+        result.own_vertices = int((~locked).sum())
+        _count_oddities(whole, locked, result)
+    return result
+
+
+def _coarse(
+    task: CellTask,
+    whole: Piece,
+    local: NDArray[np.float64],
+    middle: NDArray[np.int64],
+    locked: NDArray[np.bool_],
+) -> tuple[Piece, bool]:
+    """What stands for the cell on the next level, and whether topology was given up for it.
+
+    Triangles with two corners in one vertex have no area, so there is nothing of them to be near to: they
+    end here. Of a cell that has no others one goes up, since a node is reached through its parents' patches.
+    """
+    proper = np.flatnonzero(is_proper(whole.faces))
+    if len(proper) == 0:
+        ids, corners = np.unique(whole.faces[0], return_inverse=True)
+        face = corners.reshape(1, 3).astype(np.int32)
+        most = whole.errors.max(keepdims=True)
+        return Piece(whole.ids[ids], whole.positions[ids], face, most, whole.attributes[ids]), False
+    faces, errors = whole.faces, whole.errors
+    if len(proper) < len(faces):
+        faces, errors = faces[proper], errors[proper]
     coarse = simplify(
         local,
-        whole.faces,
+        faces,
         locked,
         target=task.target,
         relaxed_above=task.relaxed_above,
         attributes=whole.attributes,
         snap=float(task.snap),
     )
-    errors = deviation(local, whole.faces, whole.errors, coarse)
     piece = Piece(
         whole.ids[coarse.kept],
         (coarse.positions + middle).astype(np.int32),
         coarse.faces,
-        errors,
+        deviation(local, faces, errors, coarse),
         coarse.attributes,
     )
-    result = CellResult(
-        patches,
-        open_normals,
-        shared_normals,
-        piece,
-        float(errors.max()) if len(errors) else 0.0,
-        np.minimum(whole.positions.min(axis=0), piece.positions.min(axis=0)),
-        np.maximum(whole.positions.max(axis=0), piece.positions.max(axis=0)),
-        len(whole.ids),
-        int(locked.sum()),
-        len(whole.faces),
-        coarse.is_relaxed,
-    )
-    if task.is_first:
-        result.own_vertices = int((~locked).sum())
-        _count_oddities(whole, locked, result)
-    return result
+    return piece, coarse.is_relaxed
 
 
 def _on_grid(piece: Piece, task: CellTask) -> Piece:
@@ -221,8 +245,9 @@ def _patches(
 
 def _count_oddities(whole: Piece, locked: NDArray[np.bool_], result: CellResult) -> None:
     """Duplicate triangles and odd edges; edges between shared vertices are left to be counted together."""
-    edges, totals = np.empty((3 * len(whole.faces), 3), np.int32), np.empty(4, np.int64)
-    kernels.odd_edges(whole.faces, *incidence(whole.faces, len(whole.ids)), locked, edges, totals)
+    faces = whole.faces[is_proper(whole.faces)]
+    edges, totals = np.empty((3 * len(faces), 3), np.int32), np.empty(4, np.int64)
+    kernels.odd_edges(faces, *incidence(faces, len(whole.ids)), locked, edges, totals)
     result.edges = (int(totals[0]), int(totals[1]))
     result.duplicate = int(totals[2])
     result.open_edges = edges[: totals[3]].copy()

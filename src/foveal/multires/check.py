@@ -10,6 +10,7 @@ from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
+from .pieces import is_proper
 from .read import Multires, open_multires
 
 __all__ = ["CheckReport", "boundary_edges", "check"]
@@ -87,7 +88,7 @@ def check(
 
 
 def boundary_edges(faces: NDArray[np.int32], /) -> int:
-    """How many edges have exactly one triangle.
+    """How many edges have exactly one triangle; from a vertex to itself is no edge.
 
     Examples
     --------
@@ -95,8 +96,16 @@ def boundary_edges(faces: NDArray[np.int32], /) -> int:
     4
     """
     ends = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
+    ends = ends[ends[:, 0] != ends[:, 1]]
     _, uses = np.unique(ends[:, 0] << 32 | ends[:, 1], return_counts=True)
     return int((uses == 1).sum())
+
+
+def _proper(mesh: TriMesh) -> TriMesh:
+    """Without triangles that have two corners in one point: of them errors promise nothing."""
+    _, place = np.unique(mesh.positions, axis=0, return_inverse=True)
+    faces = mesh.faces[is_proper(place.reshape(-1).astype(np.int32)[mesh.faces])]
+    return TriMesh(mesh.positions, faces) if len(faces) else mesh
 
 
 def _wrong(asset: Multires, what: str) -> FovealError:
@@ -155,10 +164,11 @@ def _measure(asset: Multires, original: TriMesh, is_finest: bool) -> list[float]
     # The finest level itself is quantised: what was measured from it may miss that much.
     allowance = float(asset.header.get("finest_error", asset.step)) if is_finest else 0.0
     looseness = []
+    original = _proper(original)
     finite = np.unique(graph.errors[1:])
     for error in finite[:: max(1, len(finite) // 8)]:
         expanded = graph.errors > error
-        mesh = asset.mesh_of(expanded)
+        mesh = _proper(asset.mesh_of(expanded))
         promised = float(graph.errors[~expanded].max(initial=0.0))
         found = float(max(sampled_hausdorff(mesh, original)))
         if found > promised + allowance:

@@ -13,7 +13,7 @@ from foveal.base.progress import Progress
 from foveal.mesh.io.blocks import FaceBlock, MeshSource, VertexBlock
 
 from . import _kernels_cells as kernels
-from .pieces import Piece, local_numbers
+from .pieces import Piece, is_proper, local_numbers
 from .spool import Column, Room
 
 __all__ = ["FINE_BITS", "Intake", "Repairs"]
@@ -32,12 +32,13 @@ class Repairs:
     vertices: int = 0
     """Distinct ones that are used by a triangle."""
     triangles: int = 0
+    """All of the input."""
     welded: int = 0
     """Vertices at exactly the place of another."""
     unused: int = 0
     """Vertices of no triangle, left out."""
     degenerate: int = 0
-    """Triangles with two corners in one vertex, left out: they have no area and no neighbours."""
+    """Triangles with two corners in one vertex: the original resolution keeps them, nothing coarser does."""
     duplicate: int = 0
     """Triangles whose three corners another one has too, kept."""
     boundary_edges: int = 0
@@ -47,7 +48,10 @@ class Repairs:
         """For the person, what is worth knowing."""
         said = [
             (self.welded, "vertices at the same place as another were made one with it"),
-            (self.degenerate, "triangles with two corners in one point were left out"),
+            (
+                self.degenerate,
+                "triangles have two corners in one point and no area; the original resolution keeps them",
+            ),
             (self.unused, "vertices of no triangle were left out"),
             (self.duplicate, "triangles are there twice; they are kept"),
             (self.nonmanifold_edges, "edges have more than two triangles"),
@@ -195,7 +199,7 @@ class Intake:
         return np.concatenate(found)
 
     def pieces(self) -> Iterator[Piece]:
-        """All triangles but degenerate ones, positions in fine steps from `low`."""
+        """All triangles, positions in fine steps from `low`."""
         self.repairs.degenerate = 0
         for begin in range(0, self._faces.rows, _ROWS):
             faces = self._faces.part(begin, begin + _ROWS)
@@ -203,14 +207,7 @@ class Intake:
             # Two steps: first corners to the file's vertices, then those to their first twins.
             ids, renumber = _unique(self._twins.take(numbers)[:, 0])
             local = renumber[local]
-            a, b, c = local.T
-            is_proper = (a != b) & (b != c) & (c != a)
-            self.repairs.degenerate += int(len(faces) - is_proper.sum())
-            if not is_proper.any():
-                continue
-            if not is_proper.all():
-                ids, renumber = _unique(ids[local[is_proper]].reshape(-1))
-                local = renumber.reshape(-1, 3)
+            self.repairs.degenerate += int(len(faces) - np.count_nonzero(is_proper(local)))
             wide = ids.astype(np.int64)
             yield Piece(
                 ids,

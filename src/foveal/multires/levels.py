@@ -178,9 +178,9 @@ class Levels:
             for cell, piece in found:
                 kernels.claim(piece.ids, cell, self._owner)
                 cells.put(cell, maker, piece)
-        # The tree knows triangles that the door left out since, so a cell may have stayed empty.
+        # A cell of the tree may stay empty, since the tree was made from a sample.
         cells.content = [content for content in cells.content if content]
-        if not cells.content:
+        if self.intake.repairs.degenerate == triangles and pieces is None:
             raise FovealError(
                 f"{self.intake.name}: each of its triangles has two corners in one point, so there is "
                 "nothing to see. Export the model again."

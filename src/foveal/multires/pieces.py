@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from . import _kernels_cells as kernels
 from .partition import Partition
 
-__all__ = ["Piece", "join", "local_numbers", "split"]
+__all__ = ["Piece", "is_proper", "join", "local_numbers", "split"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,19 @@ class Piece:
     def of(cls, arrays: tuple[NDArray[Any], ...], /) -> Self:
         """A piece from what `arrays` gave."""
         return cls(*arrays)
+
+
+def is_proper(faces: NDArray[np.int32], /) -> NDArray[np.bool_]:
+    """(m,): whether the three corners are three vertices.
+
+    Examples
+    --------
+    >>> is_proper(np.array([[0, 1, 2], [3, 1, 3]], np.int32))
+    array([ True, False])
+    """
+    a, b, c = faces.T
+    found: NDArray[np.bool_] = (a != b) & (b != c) & (c != a)
+    return found
 
 
 def local_numbers(ids: NDArray[np.int32], /) -> tuple[NDArray[np.int32], NDArray[np.int64]]:

@@ -150,10 +150,9 @@ class Multires:
         Returns
         -------
         TriMesh
-            In the asset's unit and axes. Vertices at one place in different patches become one, and
-            triangles that have two corners in it then are left out.
+            In the asset's unit and axes. Vertices at one place in different patches become one. Every
+            triangle of the patches is there, also such as have two corners in one vertex.
         """
-
         mask = np.asarray(expanded)
         if mask.dtype != np.bool_ or mask.shape != (len(self.graph.errors),):
             raise ValueError(f"expanded must be bool of shape ({len(self.graph.errors)},), got {mask.shape}")
@@ -173,8 +172,6 @@ class Multires:
         faces = np.concatenate([p.faces + o for p, o in zip(patches, offsets[:-1], strict=True)])
         first, number = _merge_borders(positions, offsets)
         faces = number[faces].astype(np.int32)
-        a, b, c = faces.T
-        faces = faces[(a != b) & (b != c) & (c != a)]
         points = self.origin + self.step * positions[first].astype(np.float64)
         normals = colours = None
         if self.has_normals:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .bounds import deviation
-from .pieces import Piece, join
+from .pieces import Piece, is_proper, join
 from .simplify import simplify
 
 if TYPE_CHECKING:
@@ -40,15 +40,16 @@ def choose_step(cells: "Cells", fine_step: float, /) -> float:
     for content in full[::every][:_SAMPLES]:
         whole, _ = join([Piece.of(cells.store.get(ref)) for _, ref in content])
         middle = whole.positions[0]
+        faces = whole.faces[is_proper(whole.faces)]
+        if len(faces) == 0:
+            continue
         # In units of 2^6 fine steps: quadrics of integers this size keep ten digits.
         local = (whole.positions.astype(np.float64) - middle) / 64.0
-        size = len(whole.faces)
-        coarse = simplify(
-            local, whole.faces, _border(whole), target=size // 2, relaxed_above=size, snap=1.0 / 64.0
-        )
-        found = deviation(local, whole.faces, whole.errors, coarse)
+        size = len(faces)
+        coarse = simplify(local, faces, _border(whole), target=size // 2, relaxed_above=size, snap=1.0 / 64.0)
+        found = deviation(local, faces, np.zeros(size, np.float32), coarse)
         errors.append(float(np.max(found, initial=0.0)) * 64.0)
-    wanted = float(np.median(errors)) * _SHARE / (np.sqrt(3.0) / 2.0)
+    wanted = float(np.median(errors or [0.0])) * _SHARE / (np.sqrt(3.0) / 2.0)
     return float(np.clip(wanted, 1 << 9, 1 << 19)) * fine_step
 
 
