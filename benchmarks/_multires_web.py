@@ -130,7 +130,7 @@ class Visitor:
     """A page in a headless Chromium, perhaps behind a slow line."""
 
     def __init__(self, browser: Any, url: str, mbit: float | None = None) -> None:
-        self.context = browser.new_context(viewport={"width": 1280, "height": 720})
+        self.context = browser.new_context(viewport={"width": 1280, "height": 720}, bypass_csp=True)
         self.page = self.context.new_page()
         self.page.add_init_script(WATCH)
         self.session = self.context.new_cdp_session(self.page)

@@ -3,8 +3,8 @@ import type { Problem } from "../format/problem";
 import { defaultBudgets, deviceHints } from "../scene/device";
 import { UP } from "../scene/frame";
 import { Stage } from "../scene/stage";
-import { openAsset } from "../stream/asset";
-import { DecoderPool } from "../stream/pool";
+import type { Asset } from "../stream/asset";
+import type { DecoderPool } from "../stream/pool";
 import { Streamer } from "../stream/streamer";
 import type { Stats } from "./api";
 import { makeHelp } from "./dialogs";
@@ -48,7 +48,10 @@ export class App {
   });
 
   /** @throws Problem if the browser has no WebGL2. */
-  constructor(private readonly scene: SceneFile) {
+  constructor(
+    private readonly scene: SceneFile,
+    pool: DecoderPool,
+  ) {
     const budgets = defaultBudgets(deviceHints());
     this.stage = new Stage(byId("picture"), {
       errorPx: budgets.errorPx,
@@ -58,10 +61,8 @@ export class App {
       onLost: () => this.#onLost(),
       onRestored: () => this.#onRestored(),
     });
-    const makeWorker = (): Worker =>
-      new Worker(new URL("../stream/worker.ts", import.meta.url), { type: "module" });
     this.#streamer = new Streamer({
-      pool: new DecoderPool(makeWorker, DecoderPool.sizeFor(navigator.hardwareConcurrency)),
+      pool,
       budgetBytes: budgets.bytes,
       onChange: () => this.stage.invalidate(),
       onProblem: (problem, { node }) => this.#onProblem(problem, node),
@@ -85,20 +86,10 @@ export class App {
     return this.#help;
   }
 
-  /** Fetch and show the scene's assets; settles when all are opened. */
-  async open(onProgress: (share: number) => void): Promise<void> {
+  /** Show the scene's assets; settles when all are opened. */
+  async open(opening: Promise<readonly Asset[]>): Promise<void> {
+    const assets = await opening;
     const { layers } = this.scene;
-    const shares = layers.map(() => 0);
-    const assets = await Promise.all(
-      layers.map(({ url }, i) =>
-        openAsset(url, {
-          onProgress: (share) => {
-            shares[i] = share;
-            onProgress(shares.reduce((sum, s) => sum + s, 0) / shares.length);
-          },
-        }),
-      ),
-    );
     const parts = assets.map((asset, i) => ({
       asset,
       name: layers[i]!.name,
