@@ -1,5 +1,6 @@
 /** Decoded patches as the GPU takes them: relative to the patch's own centre, as small as they fit. */
 import type { DecodedPatch } from "../format/patch";
+import { reorder } from "./reorder";
 
 export interface PackedPatch {
   /** Grid position that the vertices are relative to. */
@@ -24,8 +25,9 @@ const FLOAT32_REACH = 1 << 24;
  * @throws Error if it is wider than floats hold exactly (2^25 steps).
  */
 export function packPatch(patch: DecodedPatch): PackedPatch {
-  const { positions, colours, indices } = patch;
+  const { positions, colours } = patch;
   const vertices = positions.length / 3;
+  const indices = reorder(patch.indices, vertices);
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; i++) {
