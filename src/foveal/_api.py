@@ -290,8 +290,6 @@ def render(
     >>> foveal.render(icosphere(2), size=(64, 48)).shape
     (48, 64, 3)
     """
-    import dataclasses
-
     from foveal.raster import write_png
     from foveal.scene.prepare import load
     from foveal.scene.render import frame, read_camera
@@ -304,7 +302,7 @@ def render(
         if camera is None:
             eye = frame(scene, size=size or (1280, 720))
         elif isinstance(camera, Camera):
-            eye = camera if size is None else dataclasses.replace(camera, width=size[0], height=size[1])
+            eye = camera if size is None else camera.resized(*size)
         else:
             eye = read_camera(camera, size=size)
         picture = draw(scene, eye, error_px=error_px)

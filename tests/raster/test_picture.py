@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -158,3 +159,16 @@ def test_png_round_trip(tmp_path):
     write_png(pixels[..., :3], tmp_path / "ball.png")
     with Image.open(tmp_path / "ball.png") as image:
         np.testing.assert_array_equal(np.asarray(image), pixels[..., :3])
+
+
+def test_a_gradient_is_the_same_in_parts_and_its_memory_is_small():
+    camera = Camera.of([0, 0, 1], [0, 0, 0], width=7, height=200)  # more rows than are made at once
+    rows = gradient(camera)
+    assert rows.shape == (200, 7, 3)
+    steps = np.abs(np.diff(rows.astype(int), axis=0))
+    assert steps.max() <= 2  # no seam
+    tracemalloc.start()
+    gradient(camera.resized(4000, 2000))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 3 * 4000 * 2000 * 3

@@ -1,5 +1,6 @@
 """The rasteriser: by hand, against rays, and the laws of shared edges, threads and large coordinates."""
 
+import dataclasses
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
@@ -244,4 +245,4 @@ def test_large_coordinates_do_not_jitter():
 
 def test_a_picture_that_is_too_large_is_refused():
     with pytest.raises(FovealError, match="too large"):
-        draw([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], ahead(width=40_000))
+        draw([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], dataclasses.replace(ahead(), width=40_000))

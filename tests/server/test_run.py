@@ -83,8 +83,9 @@ def test_a_taken_port_gives_the_next(scene, viewer):
 
 
 def test_a_host_that_is_not_ours_is_said(scene, viewer):
-    with pytest.raises(FovealError, match=r"203\.0\.113\.1.*--port"):
-        start(scene, host="203.0.113.1", viewer=viewer)
+    for host in ("203.0.113.1", "no.such.name.invalid"):
+        with pytest.raises(FovealError, match=rf"^{host}: .*--bind"):
+            start(scene, host=host, viewer=viewer)
 
 
 def test_closing_ends_it(scene, viewer):

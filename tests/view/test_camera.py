@@ -71,6 +71,15 @@ def test_json_defaults():
     assert math.degrees(camera.field_of_view) == pytest.approx(40)  # as in the viewer
 
 
+def test_resized_keeps_all_but_the_size():
+    camera = Camera.of([1, 2, 3], [4, 5, 6], near=0.25, far=9)
+    again = camera.resized(64, 48)
+    assert (again.width, again.height, again.near, again.far) == (64, 48, 0.25, 9)
+    assert again.position is camera.position
+    with pytest.raises(FovealError, match="from 1 to"):
+        camera.resized(64, 0)
+
+
 @pytest.mark.parametrize(
     ("arguments", "options", "words"),
     [
@@ -79,10 +88,13 @@ def test_json_defaults():
         (([0, 0, 1], [0, 0, 0]), {"up": [0, 0, 0]}, "up"),
         (([0, 0, 1], [0, 0, 0]), {"field_of_view": math.pi}, "between 0 and 180"),
         (([0, 0, 1], [0, 0, 0]), {"field_of_view": float("nan")}, "between 0 and 180"),
-        (([0, 0, 1], [0, 0, 0]), {"width": 0}, "at least one pixel"),
+        (([0, 0, 1], [0, 0, 0]), {"width": 0}, "from 1 to 16384 pixels"),
+        (([0, 0, 1], [0, 0, 0]), {"width": 1e9}, "from 1 to 16384 pixels"),
+        (([0, 0, 1], [0, 0, 0]), {"height": 10.5}, "whole pixels"),
+        (([0, 0, 1e200], [0, 0, 0]), {}, "below 1e100"),
         (([0, 0, 1], [0, 0, 0]), {"near": 2, "far": 1}, "near and far"),
-        (([0, 0, float("inf")], [0, 0, 0]), {}, "position must be three finite"),
-        (([0, 1], [0, 0, 0]), {}, "position must be three finite"),
+        (([0, 0, float("inf")], [0, 0, 0]), {}, "position must be three numbers"),
+        (([0, 1], [0, 0, 0]), {}, "position must be three numbers"),
     ],
 )
 def test_impossible_cameras_are_refused(arguments, options, words):

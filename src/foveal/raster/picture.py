@@ -16,11 +16,12 @@ from foveal.view.camera import Camera
 
 from . import _kernels_shade as kernels
 from .rasterise import BAND_ROWS, Screen, run_all
-from .shade import PLASTER, decode_srgb, shade_band, tables
+from .shade import PLASTER, shade_band, tables
 
 __all__ = ["Colour", "gradient", "picture", "write_png"]
 
 Colour = tuple[int, int, int]
+_GRADIENT_ROWS = 64  # at once: a large picture's in float64 would not fit
 Background = Colour | NDArray[np.uint8] | None
 
 
@@ -85,7 +86,8 @@ def picture(
                 plain=plain,
                 executor=pool,
             )
-    behind = _linear_background(background, camera)
+    behind = _background(background, camera)
+    linear_of = tables()[0].astype(np.float32)
     wide = replace(camera, width=camera.width * supersampling, height=camera.height * supersampling)
     screen = Screen(mesh.positions, mesh.faces, wide, executor=executor)
     normals = None if is_flat else vertex_normals(mesh) if mesh.normals is None else mesh.normals
@@ -104,7 +106,8 @@ def picture(
             for band, ids in zip(bands, face_ids, strict=True)
         ]
         rows = slice(group * rows_a_group, (group + 1) * rows_a_group)
-        back = np.empty((0, 0, 3), dtype=np.float32) if behind is None else behind[rows]
+        # Decoded by the group: all at once a large picture's would take more memory than all else.
+        back = np.empty((0, 0, 3), np.float32) if behind is None else linear_of[behind[rows]]
         samples = (np.concatenate(linear), np.concatenate(face_ids))
         kernels.develop(*samples, supersampling, back, behind is not None, tables()[1], out[rows])
 
@@ -112,16 +115,16 @@ def picture(
     return out
 
 
-def _linear_background(background: Background, camera: Camera) -> NDArray[np.float32] | None:
+def _background(background: Background, camera: Camera) -> NDArray[np.uint8] | None:
     if background is None:
         return None
-    colours = np.asarray(background, dtype=np.float64)
+    colours = np.asarray(background)
     shape = (camera.height, camera.width, 3)
     if colours.shape not in ((3,), shape) or not ((colours >= 0) & (colours <= 255)).all():
         raise FovealError(
             f"background: it must be three numbers from 0 to 255, or as many a pixel, in shape {shape}."
         )
-    return np.ascontiguousarray(np.broadcast_to(decode_srgb(colours / 255), shape), dtype=np.float32)
+    return np.broadcast_to(colours.astype(np.uint8, copy=False), shape)
 
 
 def gradient(
@@ -134,18 +137,20 @@ def gradient(
     >>> gradient(Camera.of([0, 0, 1], [0, 0, 0], width=3, height=3))[0, 0].tolist()
     [232, 228, 220]
     """
+    out = np.empty((camera.height, camera.width, 3), dtype=np.uint8)
     aspect = camera.width / camera.height
-    x = (2 * np.arange(camera.width) + 1) / camera.width - 1
-    y = 1 - (2 * np.arange(camera.height) + 1) / camera.height
-    away = np.sqrt((x * min(1, aspect)) ** 2 + (y[:, None] * min(1, 1 / aspect) - 0.12) ** 2)
-    t = np.clip((away - 0.1) / 1.4, 0, 1)[..., None]
-    t = t * t * (3 - 2 * t)
-    # Steps of one level in a flat gradient show as bands: a fixed noise below one level hides them.
-    column, row = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
-    noise = np.modf(52.9829189 * np.modf(column * 0.06711056 + row * 0.00583715)[0])[0][..., None]
-    colours = np.array(middle) * (1 - t) + np.array(corners) * t
-    levels: NDArray[np.float64] = np.clip(np.floor(colours + noise), 0, 255)
-    return levels.astype(np.uint8)
+    column = np.arange(camera.width) + 0.5
+    x = (2 * column / camera.width - 1) * min(1, aspect)
+    for first in range(0, camera.height, _GRADIENT_ROWS):
+        row = np.arange(first, min(first + _GRADIENT_ROWS, camera.height))[:, None] + 0.5
+        y = (1 - 2 * row / camera.height) * min(1, 1 / aspect) - 0.12
+        t = np.clip((np.sqrt(x * x + y * y) - 0.1) / 1.4, 0, 1)[..., None]
+        t = t * t * (3 - 2 * t)
+        # Steps of one level in a flat gradient show as bands: a fixed noise below one level hides them.
+        noise = np.modf(52.9829189 * np.modf(column * 0.06711056 + row * 0.00583715)[0])[0][..., None]
+        colours = np.array(middle) * (1 - t) + np.array(corners) * t
+        out[first : first + len(row)] = np.clip(np.floor(colours + noise), 0, 255)
+    return out
 
 
 def write_png(pixels: NDArray[np.uint8], path: str | os.PathLike[str], /) -> None:

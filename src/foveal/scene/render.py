@@ -33,14 +33,14 @@ def read_camera(path: str | os.PathLike[str], /, *, size: tuple[int, int] | None
     path = Path(path)
     try:
         data = json.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError as error:
+        raise FovealError(f"{path}: there is no such file.") from error
     except OSError as error:
         raise FovealError(f"{path}: cannot be read ({error.strerror}).") from error
     except ValueError as error:
         raise FovealError(f"{path}: this is not JSON ({error}).") from error
     camera = Camera.from_json(data, name=str(path))
-    if size is not None:
-        camera = dataclasses.replace(camera, width=size[0], height=size[1])
-    return camera
+    return camera if size is None else camera.resized(*size)
 
 
 def frame(scene: Scene, /, *, size: tuple[int, int] = (1280, 720)) -> Camera:

@@ -1,5 +1,6 @@
 """Run the server: on a free port, with the browser opened, until Ctrl-C."""
 
+import errno
 import os
 import socket
 import sys
@@ -45,8 +46,11 @@ def _listen(host: str, port: int | None) -> socket.socket:
         except OSError as error:
             listener.close()
             last = error
-            if isinstance(error, socket.gaierror):
-                break
+            if isinstance(error, socket.gaierror) or error.errno == errno.EADDRNOTAVAIL:
+                raise FovealError(
+                    f"{host}: this machine has no such address ({error.strerror}). "
+                    "Choose another --bind, such as 127.0.0.1, or 0.0.0.0 for all it has."
+                ) from error
     reason = getattr(last, "strerror", None) or last
     raise FovealError(
         f"{host}: no port from {first} on can be listened on ({reason}). Choose another --port."

@@ -1,7 +1,7 @@
 """The one camera: where the eye is, what it sees, how finely."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
 
-__all__ = ["Camera"]
+__all__ = ["MAX_SIDE", "Camera"]
+
+MAX_SIDE = 16384
+"""Pixels along a side of a picture, at most: what graphics processors take too."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +69,10 @@ class Camera:
             raise FovealError("camera: it looks along its own up direction; give another up.")
         if not 0 < field_of_view < math.pi:
             raise FovealError(
-                f"camera: the field of view must be between 0 and 180 degrees, got {field_of_view} radians."
+                "camera: the field of view must be between 0 and 180 degrees, "
+                f"got {math.degrees(field_of_view):g}."
             )
-        if width < 1 or height < 1:
-            raise FovealError(f"camera: the picture must have at least one pixel, got {width} x {height}.")
+        _check_size(width, height)
         near = distance / 1000 if near is None else near
         far = distance * 1000 if far is None else far
         if not 0 < near < far:
@@ -104,6 +107,11 @@ class Camera:
         distance = backward + np.maximum(np.abs(right) / tan_x, np.abs(above) / tan_y)
         away = max(1.12 * float(distance.max()), size / 1000)
         return cls.of(centre + camera.basis()[2] * away, centre, up=up, **options)
+
+    def resized(self, width: int, height: int, /) -> Self:
+        """The same camera with a picture of another size; the field of view, being vertical, stays."""
+        _check_size(width, height)
+        return replace(self, width=int(width), height=int(height))
 
     def basis(self) -> NDArray[np.float64]:
         """(3, 3): the camera's right, up and backward unit vectors as rows."""
@@ -170,13 +178,23 @@ class Camera:
             raise FovealError(f"{name}: {error}") from error
         except (AttributeError, KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
             raise FovealError(
-                f'{name}: a camera needs "position" and "target", three numbers each, and may have "up", '
-                f'"field_of_view_degrees" and "size" ({type(error).__name__}: {error}).'
+                f'{name}: a camera needs "position" and "target", three numbers each, and may have '
+                '"up" (three numbers), "field_of_view_degrees" (one) and "size" (two).'
             ) from error
+
+
+def _check_size(width: float, height: float) -> None:
+    if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE):
+        raise FovealError(
+            f"camera: a picture has from 1 to {MAX_SIDE} pixels a side, got {width:g} x {height:g}."
+        )
+    if width != int(width) or height != int(height):
+        raise FovealError(f"camera: a picture has whole pixels, got {width:g} x {height:g}.")
 
 
 def _triple(values: ArrayLike, name: str) -> NDArray[np.float64]:
     array = np.array(values, dtype=np.float64)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise FovealError(f"camera: {name} must be three finite numbers, got {values!r}.")
+    # Below 1e100 no square overflows.
+    if array.shape != (3,) or not (np.abs(array) < 1e100).all():
+        raise FovealError(f"camera: {name} must be three numbers, finite and below 1e100, got {values!r}.")
     return array
