@@ -76,3 +76,19 @@ def test_attributes_stay_in_the_hull_of_what_they_were():
     assert result.attributes.shape == (len(result.positions), 2)
     assert result.attributes.min() >= 0
     assert result.attributes.max() <= 1
+
+
+def test_the_tips_of_thin_spikes_stay():
+    # A plate of 40 x 40 with spikes two wide and twelve high: their triangles are few and small.
+    plate = grid_patch(40)
+    positions = np.round(plate.positions * 40 * 64)
+    tops = [
+        np.flatnonzero((positions[:, :2] == (64 * x, 64 * y)).all(axis=1))[0]
+        for x in (9, 20)
+        for y in (9, 20)
+    ]
+    positions[:, 2] = np.random.default_rng(0).integers(-12, 13, len(positions))  # the plate is rough
+    positions[tops, 2] = 12 * 64
+    free = np.zeros(len(positions), bool)
+    result = simplify(positions, plate.faces, free, target=400, relaxed_above=3200)
+    assert (result.positions[:, 2] > 11 * 64).sum() == 4

@@ -355,7 +355,9 @@ class _Plan:
         for a, b in self.ranges():
             below = np.unique(np.array(self.finer[a:b], np.int64))
             children.append(below[below >= 0])
-        errors = graph_chunk.rounded_up(np.array(self.errors) * self.step * (1 + 1e-9))
+        # Where one cell is coarse another may show its finest patches: no promise is below theirs.
+        errors = np.maximum(self.errors, self.levels.levels[0].moved)
+        errors = graph_chunk.rounded_up(errors * self.step * (1 + 1e-9))
         for node in range(len(errors) - 1, 0, -1):
             if len(children[node]):
                 errors[node] = max(errors[node], errors[children[node]].max())
@@ -401,7 +403,7 @@ def _header(
         "levels": len(levels.levels) + 1,
         "streams": streams,
         "codec": "foveal",
-        "finest_error": math.sqrt(3) / 2 * step * (1 + 1e-6) + intake.fine_step,
+        "finest_error": levels.levels[0].moved * step * (1 + 1e-6),
         "input": asdict(intake.repairs),
         "level_table": table,
     }

@@ -92,6 +92,8 @@ class CellResult:
     vertices, locked, triangles : int
         Of the cell before; vertices count for the cell where they are first used only if `is_first`.
     is_relaxed : bool
+    moved : float
+        If `is_first`: how far the patches themselves are from the original, in steps.
     """
 
     patches: list[Patch]
@@ -105,6 +107,7 @@ class CellResult:
     locked: int
     triangles: int
     is_relaxed: bool
+    moved: float = 0.0
     own_vertices: int = 0
     duplicate: int = 0
     edges: tuple[int, int] = (0, 0)
@@ -140,6 +143,7 @@ def work(task: CellTask) -> CellResult:
         is_relaxed,
     )
     if task.is_first:
+        result.moved = float(whole.errors.max())
         result.own_vertices = int((~locked).sum())
         _count_oddities(whole, locked, result)
     return result

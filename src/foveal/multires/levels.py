@@ -81,6 +81,7 @@ class Level:
     relaxed_cells: int
     stalled_cells: int
     joined: int = 1
+    moved: float = 0.0
     nodes: list[Node] = field(default_factory=list)
     normal_ids: NDArray[np.int32] = field(default_factory=lambda: np.empty(0, np.int32))
     normal_values: NDArray[np.int16] = field(default_factory=lambda: np.empty((0, 2), np.int16))
@@ -204,6 +205,7 @@ class Levels:
             row.vertices += result.vertices
             row.locked += result.locked
             row.error = max(row.error, result.error)
+            row.moved = max(row.moved, result.moved)
             row.relaxed_cells += result.is_relaxed
             row.stalled_cells += left > max(
                 RELAXED * result.triangles, self.settings.root_triangles // row.cells

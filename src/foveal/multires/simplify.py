@@ -9,7 +9,7 @@ from . import _kernels_simplify as kernels
 
 __all__ = ["Simplified", "incidence", "neighbours", "simplify"]
 
-#: Weight of the wall that holds an open border in place, relative to a face of the same size.
+#: Weight of the wall that holds an open border in place, relative to a face, both by length.
 BORDER_WEIGHT = 4.0
 
 #: Strict passes over all edges. What a pass refused may be fine after its neighbours have moved; on the
