@@ -54,4 +54,5 @@ def viewer(tmp_path):
     (folder / "index.html").write_text("<!doctype html><title>foveal</title>")
     (folder / "assets" / "index-0a1B2c3D.js").write_text("1")
     (folder / ".hidden").write_text("a secret")
+    (folder / "bundle.json").write_text("{}")
     return folder

@@ -22,7 +22,7 @@ from .options import (
     Verbose,
     Workers,
 )
-from .report import print_json, reporter
+from .report import counted, print_json, reporter
 from .work import build_arguments, dask_executor, refuse_existing
 
 if TYPE_CHECKING:
@@ -93,11 +93,11 @@ def build(
 
 def _print(output: Path, report: "BuildReport", seconds: float) -> None:
     repairs = report.repairs
-    counts = f"{repairs.triangles:,} triangles, {repairs.vertices:,} vertices"
+    counts = f"{counted(repairs.triangles, 'triangle')}, {counted(repairs.vertices, 'vertex', 'vertices')}"
     print(f"{output}: {counts}, in {seconds:.1f} s")
     bits = 8 * report.bytes / max(1, repairs.vertices)
     print(f"  size         {report.bytes:,} bytes, {bits:.2f} bits a vertex")
-    levels = f"{len(report.levels)} level{'' if len(report.levels) == 1 else 's'}"
+    levels = counted(len(report.levels), "level")
     print(f"  patches      {report.patches:,} in {report.nodes:,} nodes, {levels}")
     print(f"  grid step    {report.step:.6g}")
     if repairs.nonmanifold_edges or repairs.boundary_edges:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from .options import Debug, Force, Json, Memory, Quiet, Source, Up, Verbose, Workers
-from .report import print_json, reporter
+from .report import counted, print_json, reporter
 from .work import build_arguments, refuse_existing
 
 __all__ = ["export"]
@@ -77,5 +77,7 @@ def export(
     if json:
         print_json(facts)
     elif not quiet:
-        counts = f"{facts['triangles']:,} triangles, {facts['vertices']:,} vertices"
+        counts = (
+            f"{counted(len(mesh.faces), 'triangle')}, {counted(len(mesh.positions), 'vertex', 'vertices')}"
+        )
         print(f"{output}: {counts}, {facts['bytes']:,} bytes")

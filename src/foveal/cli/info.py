@@ -3,7 +3,7 @@
 from typing import Any
 
 from .options import Debug, Json, Source, Up
-from .report import print_json, table
+from .report import counted, print_json, table
 
 __all__ = ["info"]
 
@@ -19,7 +19,7 @@ def info(file: Source, up: Up = None, json: Json = False, debug: Debug = False) 
     if json:
         print_json(facts)
     elif facts["kind"] == "scene":
-        print(f"{facts['file']}: scene {facts['title']!r}, {len(facts['layers'])} layers")
+        print(f"{facts['file']}: scene {facts['title']!r}, {counted(len(facts['layers']), 'layer')}")
         for layer in facts["layers"]:
             print(f"\n{layer['name']}{'' if layer['visible'] else ' (hidden at first)'}")
             _print_fov(layer)
@@ -30,7 +30,7 @@ def info(file: Source, up: Up = None, json: Json = False, debug: Debug = False) 
 
 
 def _print_common(facts: dict[str, Any]) -> None:
-    counts = f"{facts['triangles']:,} triangles, {facts['vertices']:,} vertices"
+    counts = f"{counted(facts['triangles'], 'triangle')}, {counted(facts['vertices'], 'vertex', 'vertices')}"
     print(f"{facts['file']}: {counts}, {facts['bytes']:,} bytes")
     low, high = facts["box"]
     print(f"  size         {' x '.join(f'{b - a:.6g}' for a, b in zip(low, high, strict=True))}")

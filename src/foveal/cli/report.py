@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
     from rich.progress import TaskID
 
-__all__ = ["Reporter", "print_json", "reporter", "table"]
+__all__ = ["Reporter", "counted", "print_json", "reporter", "table"]
 
 _LINE_EVERY_S = 5.0
 
@@ -168,6 +168,17 @@ def reporter(*, is_quiet: bool, is_verbose: bool) -> Reporter:
     if is_quiet:
         return _Quiet(is_verbose=False)
     return (_Bars if sys.stderr.isatty() else _Lines)(is_verbose=is_verbose)
+
+
+def counted(number: int, what: str, plural: str = "") -> str:
+    """A number of things, in words.
+
+    Examples
+    --------
+    >>> counted(1, "triangle"), counted(1234, "vertex", "vertices")
+    ('1 triangle', '1,234 vertices')
+    """
+    return f"{number:,} {what if number == 1 else plural or what + 's'}"
 
 
 def table(heads: list[str], rows: list[list[str]]) -> str:

@@ -8,12 +8,13 @@ from foveal.base.errors import FovealError
 __all__ = ["viewer_files"]
 
 _BUILT = Path(__file__).parents[1] / "viewer"
+_NOTE = Path("bundle.json")  # by which hatch_build.py knows whether to build anew
 
 
 def viewer_files(folder: str | os.PathLike[str] | None = None, /) -> dict[str, Path]:
     """The viewer's files by address, such as ``"assets/index-3f2a.js"``.
 
-    Hidden files, and links that lead out of the folder, are left out.
+    Hidden files, links that lead out of the folder, and the note of what it was built from are left out.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def viewer_files(folder: str | os.PathLike[str] | None = None, /) -> dict[str, P
     found = {}
     for path in sorted(root.rglob("*")):
         name = path.relative_to(root)
-        if any(part.startswith(".") for part in name.parts) or not path.is_file():
+        if any(part.startswith(".") for part in name.parts) or not path.is_file() or name == _NOTE:
             continue
         if path.resolve().is_relative_to(inside):
             found[name.as_posix()] = path.resolve()

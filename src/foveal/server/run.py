@@ -8,7 +8,7 @@ import threading
 import time
 import webbrowser
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import uvicorn
@@ -68,8 +68,8 @@ class Running:
     """
 
     url: str
-    _server: uvicorn.Server
-    _thread: threading.Thread
+    _server: uvicorn.Server = field(repr=False)
+    _thread: threading.Thread = field(repr=False)
 
     def close(self) -> None:
         """Stop serving; further calls do nothing."""
