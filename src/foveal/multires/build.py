@@ -37,7 +37,7 @@ VERSION = 1
 #: Triangles of a cell. The dragon (871 K triangles) at 11 bits without normals, then with the defaults:
 #:
 #: ======  =================  =====================  ======================
-#: cell    file, MB           before the first data  drawn at 1 px         
+#: cell    file, MB           before the first data  drawn at 1 px
 #: ======  =================  =====================  ======================
 #: 8 K     1.52    3.07       2.2 %    1.1 %         236 K    77 K
 #: 16 K    1.42    2.71       1.3 %    0.7 %         315 K    88 K
@@ -45,8 +45,8 @@ VERSION = 1
 #: 32 K    1.34    2.57       0.8 %    0.45 %        375 K    101 K
 #: ======  =================  =====================  ======================
 #:
-#: Drawn: 1280 x 720, 40 degrees, the eye at 2.5 radii. Header and index are what everybody waits for, so they may take one
-#: part in a hundred; of what keeps that, the smallest cells follow the view most closely.
+#: Drawn: 1280 x 720, 40 degrees, the eye at 2.5 radii. Header and index are what everybody waits for, so
+#: they may take one part in a hundred; of what keeps that, the smallest cells follow the view most closely.
 CELL_TRIANGLES = 24576
 
 #: Triangles of the coarsest mesh: what a page shows first; 4 K triangles are about 6 KB.
