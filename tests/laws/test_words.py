@@ -26,7 +26,7 @@ BANNED = {
 }
 # Names that others gave: formats, libraries, protocols.
 FOREIGN = re.compile(
-    r"""["'`]?(?:\.color\b|\w*_color\w*|\w*Color\w*|COLOR_\d|color(?:ama|s?["'`(=])|vertex_colors|face_colors|baseColor\w*|color-scheme)"""
+    r"""["'`]?(?:\.color\b|\w*_color\w*|\w*Color\w*|COLOR_\d|color(?:ama|s?["'`(=])|vertex_colors|face_colors|baseColor\w*|color-scheme|quantization_\w+)"""
 )
 
 

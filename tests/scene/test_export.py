@@ -56,6 +56,8 @@ def test_too_few_triangles_are_refused(ball):
 def test_formats_and_limits_are_checked_before_any_work(ball, tmp_path):
     with pytest.raises(FovealError, match=r"\.ply or \.glb"):
         export(ball, tmp_path / "ball.stl")
+    with pytest.raises(FovealError, match="one by one"):
+        export(tmp_path / "scene.json")
     with pytest.raises(FovealError, match="error must be"):
         export(ball, error=-1.0)
     with pytest.raises(ValueError, match="not both"):

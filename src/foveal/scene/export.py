@@ -60,6 +60,8 @@ def export(
     source, output = Path(source), None if output is None else Path(output)
     if output is not None and output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
+    if source.suffix.lower() == ".json":
+        raise FovealError(f"{source}: a scene.json is not exported whole; export its files one by one.")
     if error is not None and triangles is not None:
         raise ValueError("give error or triangles, not both")
     if error is not None and not 0 <= error < float("inf"):
