@@ -1,4 +1,4 @@
-"""Which format a file has, by its content first and its suffix second."""
+"""Which format a file has, by its content; a suffix that says otherwise is refused."""
 
 import re
 import struct
@@ -39,7 +39,7 @@ def detect(path: Path) -> str:
     Raises
     ------
     FovealError
-        If the file is missing, empty, or neither its content nor its suffix is known.
+        If the file is missing, empty, named as another format than it has, or of none that is known.
     """
     with ByteStream(path) as stream:
         head = stream.read(_HEAD_BYTES)
@@ -51,6 +51,11 @@ def detect(path: Path) -> str:
     if kind == "zip" and suffix in ("3mf", "3dxml", "zae"):
         return suffix
     if kind is not None and kind != "zip":
+        if suffix in _OURS | _THEIRS and suffix != kind:
+            # Nothing would be lost by reading it, but a name that is wrong tends to be a wrong file.
+            raise FovealError(
+                f"{path}: it is named .{suffix} but holds {kind.upper()}. Rename it to .{kind}."
+            )
         return kind
     for start, what, remedy in _STRANGERS:
         if head.lstrip().startswith(start):
