@@ -9,6 +9,8 @@ only make it tight. The cuts are along walls: through each edge, halfway between
 
 import math
 
+import numpy as np
+
 from foveal.base.jit import kernel
 
 
@@ -198,12 +200,12 @@ def measure(
         while top > 0:
             top -= 1
             count, g, came, depth = (
-                stack_info[top, 0],
-                stack_info[top, 1],
-                stack_info[top, 2],
-                stack_info[top, 3],
+                np.int64(stack_info[top, 0]),
+                np.int64(stack_info[top, 1]),
+                np.int64(stack_info[top, 2]),
+                np.int64(stack_info[top, 3]),
             )
-            now = 0
+            now = np.int64(0)  # no literal: each would be a signature of its own to compile
             for i in range(count):
                 work[0, i, 0] = stack[top, i, 0]
                 work[0, i, 1] = stack[top, i, 1]
@@ -251,9 +253,9 @@ def file_faces(positions, faces, low, scale, size, starts, refs, is_counting):
     """Put each face into the boxes of a grid that its own box meets: first counting, then filling."""
     total = 0
     for f in range(len(faces)):
-        i0, i1 = span(positions, faces, f, 0, low[0], scale, size[0])
-        j0, j1 = span(positions, faces, f, 1, low[1], scale, size[1])
-        k0, k1 = span(positions, faces, f, 2, low[2], scale, size[2])
+        i0, i1 = span(positions, faces, f, np.int64(0), low[0], scale, size[0])
+        j0, j1 = span(positions, faces, f, np.int64(1), low[1], scale, size[1])
+        k0, k1 = span(positions, faces, f, np.int64(2), low[2], scale, size[2])
         for i in range(i0, i1 + 1):
             for j in range(j0, j1 + 1):
                 for k in range(k0, k1 + 1):
@@ -297,7 +299,7 @@ def nearest_face(x, y, z, positions, faces, frames, low, scale, size, starts, re
                         continue
                     box = (i * size[1] + j) * size[2] + k
                     for r in range(starts[box], starts[box + 1]):
-                        g = refs[r]
+                        g = np.int64(refs[r])
                         d = squared_to_face(x, y, z, frames, positions, faces, g)
                         if d < d_best:
                             best, d_best = g, d
@@ -357,7 +359,7 @@ def measure_closely(
             lower = max(far[top, 0], max(far[top, 1], far[top, 2]))
             best, upper = near[top, 0], math.inf
             for i in range(3):
-                worst = farthest(stack, top, 3, frames, onto_positions, onto_faces, near[top, i])
+                worst = farthest(stack, top, np.int64(3), frames, onto_positions, onto_faces, near[top, i])
                 if worst < upper:
                     best, upper = near[top, i], worst
             record = max(record, lower)

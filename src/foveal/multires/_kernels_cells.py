@@ -49,15 +49,19 @@ def grow(points, order, limit, parity, low, high, nodes, planes, stack, boxes):
     """
     used, cells, top = 0, 0, 1
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = 0, len(order), 0, -1
-    boxes[0, 0], boxes[0, 1] = low, high
+    # Element by element: copies of slices took half of ten seconds to compile.
+    for k in range(3):
+        boxes[0, 0, k], boxes[0, 1, k] = low[k], high[k]
     while top > 0:
         top -= 1
         begin, end, depth, link = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
-        box = boxes[top].copy()
-        axis = 0
-        for k in range(1, 3):
-            if box[1, k] - box[0, k] > box[1, axis] - box[0, axis]:
-                axis = k
+        lx, ly, lz = boxes[top, 0, 0], boxes[top, 0, 1], boxes[top, 0, 2]
+        hx, hy, hz = boxes[top, 1, 0], boxes[top, 1, 1], boxes[top, 1, 2]
+        axis = np.int64(0)
+        if hy - ly > hx - lx:
+            axis = np.int64(1)
+        if hz - lz > max(hx - lx, hy - ly):
+            axis = np.int64(2)
         is_leaf = end - begin <= limit or len(stack) - top < 4 or used >= len(nodes)
         cut = begin
         if not is_leaf:
@@ -94,11 +98,55 @@ def grow(points, order, limit, parity, low, high, nodes, planes, stack, boxes):
             stack[top, 1] = cut if side == 0 else end
             stack[top, 2] = depth + 1
             stack[top, 3] = 2 * used + side
-            boxes[top] = box
+            boxes[top, 0, 0], boxes[top, 0, 1], boxes[top, 0, 2] = lx, ly, lz
+            boxes[top, 1, 0], boxes[top, 1, 1], boxes[top, 1, 2] = hx, hy, hz
             boxes[top, 1 - side, axis] = plane
             top += 1
         used += 1
     return used, cells
+
+
+@kernel
+def box(positions, low, high):
+    """Least and greatest coordinates. NumPy's min over rows of three takes ten times as long."""
+    for axis in range(3):
+        low[axis] = positions[0, axis]
+        high[axis] = positions[0, axis]
+    for v in range(1, len(positions)):
+        for axis in range(3):
+            low[axis] = min(low[axis], positions[v, axis])
+            high[axis] = max(high[axis], positions[v, axis])
+
+
+@kernel
+def corner_sums(positions, faces, first, stride, out):
+    """out[i] = sum of the corners of face first + i stride: three times its centroid."""
+    for i in range(len(out)):
+        f = first + i * stride
+        for axis in range(3):
+            s = 0.0
+            for k in range(3):
+                s += positions[faces[f, k], axis]
+            out[i, axis] = s
+
+
+@kernel
+def to_grid(positions, faces, ratio, offset, moved, out, errors):
+    """Round positions * ratio to `out`; errors[f] bounds how far face f moved, `offset` included.
+
+    moved (n,) is scratch.
+    """
+    for v in range(len(positions)):
+        squared = 0.0
+        for axis in range(3):
+            x = positions[v, axis] * ratio
+            q = np.rint(x)
+            out[v, axis] = np.int32(q)
+            squared += (q - x) * (q - x)
+        moved[v] = np.sqrt(squared) + offset
+    for f in range(len(faces)):
+        most = max(moved[faces[f, 0]], max(moved[faces[f, 1]], moved[faces[f, 2]]))
+        errors[f] = most * (1 + 1e-6)
 
 
 @kernel

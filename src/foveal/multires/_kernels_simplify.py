@@ -265,7 +265,8 @@ def offer_all(
         if not alive[f]:
             continue
         for k in range(3):
-            u, v = faces[f, k], faces[f, (k + 1) % 3]
+            # int64 here and below: one signature of `place` and `offer` to compile, not three.
+            u, v = np.int64(faces[f, k]), np.int64(faces[f, (k + 1) % 3])
             if u < v or across[f, k] < 0 or not is_strict:
                 offer(positions, quadrics, locked, u, v, snap, versions, slots, heap, sizes)
 
@@ -481,7 +482,8 @@ def compact(alive, starts, counts, refs, fresh):
                 end += 1
         starts[v] = begin
         counts[v] = end - begin
-    refs[:end] = fresh[:end]
+    for i in range(end):  # a slice would take two seconds to compile
+        refs[i] = fresh[i]
     return end
 
 
@@ -523,7 +525,7 @@ def collapse(
         sizes[0] -= 1
         if sizes[0] > 0:
             sift(heap, sizes[0], 0, heap[sizes[0]])
-        u, v = slots[slot, 0], slots[slot, 1]
+        u, v = np.int64(slots[slot, 0]), np.int64(slots[slot, 1])
         is_measured = u < 0
         if is_measured:
             u = -1 - u
@@ -567,7 +569,7 @@ def collapse(
             break  # the caller fills the queue anew
         for i in range(starts[u], starts[u] + counts[u]):
             for k in range(3):
-                w = faces[refs[i], k]
+                w = np.int64(faces[refs[i], k])
                 if w != u and marks[w] != stamp:
                     marks[w] = stamp
                     offer(positions, quadrics, locked, u, w, snap, versions, slots, heap, sizes)

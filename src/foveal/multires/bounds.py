@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_bounds as kernels
+from .pieces import box
 from .simplify import Simplified, neighbours
 
 __all__ = ["deviation"]
@@ -144,7 +145,7 @@ class _Target:
         self,
     ) -> tuple[NDArray[np.float64], float, NDArray[np.int64], NDArray[np.int64], NDArray[np.int32]]:
         """A grid of boxes over the mesh, about two for a face, with the faces that meet each."""
-        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        low, high = box(self.positions)
         extent = np.maximum(high - low, 1e-6 * max(1.0, float((high - low).max())))
         a, b = self.positions[self.faces[::16, 0]], self.positions[self.faces[::16, 1]]
         edge = float(np.sqrt(((a - b) ** 2).sum(axis=1)).mean()) or 1.0

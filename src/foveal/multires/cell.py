@@ -9,7 +9,7 @@ from . import _kernels_cells as kernels
 from .bounds import deviation
 from .codec import Patch, quantise_normals
 from .partition import partition
-from .pieces import Piece, is_proper, join, local_numbers, split
+from .pieces import Piece, box, corner_sums, is_proper, join, local_numbers, split
 from .simplify import incidence, simplify
 
 __all__ = ["CellResult", "CellTask", "SharedNormals", "work"]
@@ -124,19 +124,21 @@ def work(task: CellTask) -> CellResult:
     if task.is_first:
         whole, locked, pieces, maps = _first_patches(whole, locked, task.patch_triangles)
     # Local coordinates: integers in doubles, near zero, so that quadrics do not lose digits.
-    middle = (whole.positions.min(axis=0).astype(np.int64) + whole.positions.max(axis=0)) // 2
+    low, high = box(whole.positions)
+    middle = (low.astype(np.int64) + high) // 2
     middle -= middle % task.snap
     local = (whole.positions - middle).astype(np.float64)
     patches, open_normals, shared_normals = _patches(task, whole, pieces, maps, local, locked)
     piece, is_relaxed = _coarse(task, whole, local, middle, locked)
+    coarse_low, coarse_high = box(piece.positions)
     result = CellResult(
         patches,
         open_normals,
         shared_normals,
         piece,
         float(piece.errors.max()),
-        np.minimum(whole.positions.min(axis=0), piece.positions.min(axis=0)),
-        np.maximum(whole.positions.max(axis=0), piece.positions.max(axis=0)),
+        np.minimum(low, coarse_low),
+        np.maximum(high, coarse_high),
         len(whole.ids),
         int(locked.sum()),
         len(whole.faces),
@@ -191,13 +193,10 @@ def _coarse(
 
 def _on_grid(piece: Piece, task: CellTask) -> Piece:
     """From the door's fine grid to the file's, with the distance that each face moved by."""
-    exact = piece.positions * task.ratio
-    positions = np.rint(exact)
-    moved = np.sqrt(((positions - exact) ** 2).sum(axis=1)) + task.offset
-    errors = moved[piece.faces].max(axis=1) * (1 + 1e-6)
-    return Piece(
-        piece.ids, positions.astype(np.int32), piece.faces, errors.astype(np.float32), piece.attributes
-    )
+    positions, errors = np.empty_like(piece.positions), np.empty(len(piece.faces), np.float32)
+    moved = np.empty(len(positions))
+    kernels.to_grid(piece.positions, piece.faces, task.ratio, task.offset, moved, positions, errors)
+    return Piece(piece.ids, positions, piece.faces, errors, piece.attributes)
 
 
 def _first_patches(
@@ -206,7 +205,7 @@ def _first_patches(
     """The cell as one patch, however the file was read; as several if cells had to be joined."""
     if len(whole.faces) <= 2 * most:
         return whole, locked, [whole], [np.arange(len(whole.ids), dtype=np.int32)]
-    points = whole.positions.astype(np.float64)[whole.faces].sum(axis=1)
+    points = corner_sums(whole.positions, whole.faces)
     pieces = [piece for _, piece in split(whole, partition(points, limit=most, level=0))]
     again, maps = join(pieces)
     before, _ = local_numbers(np.concatenate([whole.ids, again.ids]))

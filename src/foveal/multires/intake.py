@@ -13,7 +13,7 @@ from foveal.base.progress import Progress
 from foveal.mesh.io.blocks import FaceBlock, MeshSource, VertexBlock
 
 from . import _kernels_cells as kernels
-from .pieces import Piece, is_proper, local_numbers
+from .pieces import Piece, corner_sums, is_proper, local_numbers
 from .spool import Column, Room
 
 __all__ = ["FINE_BITS", "Intake", "Repairs"]
@@ -195,7 +195,7 @@ class Intake:
         for begin in range(0, self._faces.rows, _ROWS):
             faces = self._faces.part(begin, begin + _ROWS)[(-begin) % stride :: stride]
             numbers, local = _numbered(faces)
-            found.append(self._fine(numbers).astype(np.float64)[local].sum(axis=1))
+            found.append(corner_sums(self._fine(numbers), local))
         return np.concatenate(found)
 
     def pieces(self) -> Iterator[Piece]:

@@ -21,7 +21,7 @@ from .cell import CellResult, CellTask, SharedNormals, work
 from .codec import Patch, quantise_normals
 from .intake import Intake
 from .partition import Partition, partition
-from .pieces import Piece, local_numbers, split
+from .pieces import Piece, corner_sums, local_numbers, split
 from .spool import Room, Store
 
 __all__ = ["Grid", "Level", "Levels", "Node", "Settings"]
@@ -315,8 +315,7 @@ def _split(item: tuple[Piece, Partition]) -> list[tuple[int, Piece]]:
 
 def _centroids(arrays: tuple[NDArray[np.int32], ...], stride: int, first: int) -> NDArray[np.float64]:
     _, positions, faces = arrays[:3]
-    points: NDArray[np.float64] = positions.astype(np.float64)[faces[first % stride :: stride]].sum(axis=1)
-    return points
+    return corner_sums(positions, faces, first=first % stride, stride=stride)
 
 
 def _whole_normals(sums: list[SharedNormals], bits: int) -> tuple[NDArray[np.int32], NDArray[np.int16]]:

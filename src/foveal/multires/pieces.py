@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from . import _kernels_cells as kernels
 from .partition import Partition
 
-__all__ = ["Piece", "is_proper", "join", "local_numbers", "split"]
+__all__ = ["Piece", "box", "corner_sums", "is_proper", "join", "local_numbers", "split"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,22 @@ class Piece:
     def of(cls, arrays: tuple[NDArray[Any], ...], /) -> Self:
         """A piece from what `arrays` gave."""
         return cls(*arrays)
+
+
+def box(positions: NDArray[Any], /) -> tuple[NDArray[Any], NDArray[Any]]:
+    """(low, high), each (3,): least and greatest coordinates of positions (n, 3), n > 0."""
+    low, high = np.empty(3, positions.dtype), np.empty(3, positions.dtype)
+    kernels.box(positions, low, high)
+    return low, high
+
+
+def corner_sums(
+    positions: NDArray[np.int32], faces: NDArray[np.int32], /, *, first: int = 0, stride: int = 1
+) -> NDArray[np.float64]:
+    """(k, 3): sums of the corners, which is what partitions are made of, of each `stride`-th face."""
+    out = np.empty((len(range(first, len(faces), stride)), 3))
+    kernels.corner_sums(positions, faces, first, stride, out)
+    return out
 
 
 def is_proper(faces: NDArray[np.int32], /) -> NDArray[np.bool_]:
