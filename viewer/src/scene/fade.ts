@@ -31,12 +31,19 @@ export class Fade {
       if (now === goal) continue;
       const next = node === 0 ? goal : goal > now ? Math.min(1, now + stride) : Math.max(0, now - stride);
       this.phase[node] = next;
-      if (next === goal) this.#moving.delete(node);
+      // As it was stored: nine steps of a ninth may end below 1 as a double and at 1 as a float.
+      if (this.phase[node] === goal) this.#moving.delete(node);
       else this.#moving.add(node);
     }
   }
 
-  /** What is gone shows nothing and does not move. */
+  /** A node that is gone shows nothing and does not move. */
+  forget(node: number): void {
+    this.phase[node] = 0;
+    this.#moving.delete(node);
+  }
+
+  /** All are gone. */
   reset(): void {
     this.phase.fill(0);
     this.#moving.clear();

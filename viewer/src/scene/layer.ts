@@ -77,7 +77,7 @@ export class Layer {
     }
     this.#meshes.delete(node);
     this.available[node] = 0;
-    this.fade.phase[node] = 0;
+    this.fade.forget(node);
   }
 
   /** Free everything, e.g. when the GPU is lost. */

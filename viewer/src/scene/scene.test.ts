@@ -60,6 +60,21 @@ describe("fade", () => {
     sudden.advance(expanded, 1);
     expect([...sudden.phase]).toEqual([1, 1]);
   });
+
+  it("ends whatever the steps, and when its node goes", () => {
+    for (let milliseconds = 1; milliseconds < 160; milliseconds += 1 / 6) {
+      const fade = new Fade(2, 150);
+      const expanded = Uint8Array.of(1, 1);
+      for (let passed = 0; passed < 150 + 2 * milliseconds; passed += milliseconds) {
+        fade.advance(expanded, milliseconds);
+      }
+      expect(fade.isMoving).toBe(false); // else frames would be drawn for ever
+      fade.advance(Uint8Array.of(1, 0), 10);
+      expect(fade.isMoving).toBe(true);
+      fade.forget(1);
+      expect(fade.isMoving).toBe(false);
+    }
+  });
 });
 
 describe("error target", () => {
