@@ -31,6 +31,7 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker(pytest.mark.browser)
+            item.add_marker(pytest.mark.timeout(180))  # a page that never rests shall not hold up the rest
 
 
 @pytest.fixture(scope="session")
