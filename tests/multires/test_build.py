@@ -228,3 +228,29 @@ def test_wrong_options_are_refused(options, tmp_path):
 def test_a_step_too_small_is_refused(tmp_path):
     with pytest.raises(FovealError, match="too small"):
         multires.build(icosphere(1), tmp_path / "x.fov", step=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-35, 1e35, 1e300])
+def test_sizes_that_float32_cannot_hold_get_a_sentence(size, tmp_path):
+    mesh = icosphere(1)
+    mesh = TriMesh.of(mesh.positions * size, mesh.faces)
+    with pytest.raises(FovealError, match="Scale the model"):
+        multires.build(mesh, tmp_path / "a.fov")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "sentence"),
+    [
+        ({"step": 100.0}, FovealError, "too large for a model of size"),
+        ({"step": 1e-12}, FovealError, "too small for a model of size"),
+        ({"step": float("nan")}, ValueError, "positive length"),
+        ({"step": -1.0}, ValueError, "positive length"),
+        ({"bits": 2.5}, ValueError, "whole number"),
+        ({"bits": 0}, ValueError, "whole number"),
+        ({"memory_bytes": -1}, ValueError, "must be positive"),
+    ],
+)
+def test_impossible_options_are_refused(options, error, sentence, tmp_path):
+    with pytest.raises(error, match=sentence):
+        multires.build(icosphere(2), tmp_path / "a.fov", **options)

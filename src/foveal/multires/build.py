@@ -144,6 +144,16 @@ def build(
         raise ValueError(f"cell_triangles must be at least 64, got {cell_triangles}")
     if normals not in ("auto", "none"):
         raise ValueError(f'normals must be "auto" or "none", got {normals!r}')
+    if bits is not None and (int(bits) != bits or not 1 <= bits <= FINE_BITS - 1):
+        raise ValueError(f"bits must be a whole number from 1 to {FINE_BITS - 1}, got {bits}")
+    if step is not None and not (math.isfinite(step) and step > 0):
+        raise ValueError(f"step must be a positive length, got {step}")
+    if memory_bytes is not None and memory_bytes < 1:
+        raise ValueError(f"memory_bytes must be positive, got {memory_bytes}")
+    if memory_bytes is not None and memory_bytes < _BASE_BYTES:
+        progress.note(
+            f"Python and its libraries take about {_BASE_BYTES >> 20} MB: less cannot be kept within."
+        )
     source = _source(source)
     clock = _Clock()
     with ExitStack() as stack:
@@ -223,13 +233,12 @@ def _room_bytes(memory_bytes: int | None) -> int:
 def _given_step(intake: Intake, bits: int | None, step: float | None, name: str) -> float | None:
     extent = intake.extent or 1.0
     if bits is not None:
-        if not 1 <= bits <= FINE_BITS - 1:
-            raise ValueError(f"bits must be 1 to {FINE_BITS - 1}, got {bits}")
         return extent / ((1 << bits) - 1)
-    if step is not None and not (math.isfinite(step) and step > 2 * intake.fine_step):
+    if step is not None and not 2 * intake.fine_step < step <= extent:
+        fault = "too large" if step > extent else "too small"
         raise FovealError(
-            f"{name}: a step of {step} is too small for a model of size {extent:.6g}. "
-            f"Give at least {4 * intake.fine_step:.2g}."
+            f"{name}: a step of {step} is {fault} for a model of size {extent:.6g}. "
+            f"Give at least {4 * intake.fine_step:.2g} and at most that size."
         )
     return step
 

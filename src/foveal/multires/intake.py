@@ -25,6 +25,10 @@ _ROWS = 1 << 18  # faces or vertices that are in work at once
 _KEY_BYTES = 28  # of a slot of the welding table
 
 
+#: Least and greatest size of a model: spheres and errors are stored as float32.
+_SIZES = (1e-30, 1e30)
+
+
 @dataclass
 class Repairs:
     """What was odd about the input, in numbers."""
@@ -47,16 +51,16 @@ class Repairs:
     def sentences(self) -> list[str]:
         """For the person, what is worth knowing."""
         said = [
-            (self.welded, "vertices at the same place as another were made one with it"),
+            (self.welded, "Vertices at the same place as another, made one with it"),
             (
                 self.degenerate,
-                "triangles have two corners in one point and no area; the original resolution keeps them",
+                "Triangles with two corners in one point, kept at the original resolution only",
             ),
-            (self.unused, "vertices of no triangle were left out"),
-            (self.duplicate, "triangles are there twice; they are kept"),
-            (self.nonmanifold_edges, "edges have more than two triangles"),
+            (self.unused, "Vertices of no triangle, left out"),
+            (self.duplicate, "Triangles that are there twice, kept"),
+            (self.nonmanifold_edges, "Edges of more than two triangles"),
         ]
-        return [f"{count:,} {what}." for count, what in said if count]
+        return [f"{what}: {count:,}." for count, what in said if count]
 
 
 @dataclass
@@ -122,8 +126,10 @@ class Intake:
             column.seal()
         if self._faces.rows == 0:
             raise FovealError(f"{source.name}: there is no triangle in it.")
-        if self._faces.rows and not math.isfinite(self.extent):
+        if not self.extent <= _SIZES[1]:
             raise FovealError(f"{source.name}: its coordinates are too large. Scale the model down.")
+        if 0 < self.extent < _SIZES[0]:
+            raise FovealError(f"{source.name}: it is {self.extent:.3g} large. Scale the model up.")
         self._weld()
 
     def _add_vertices(self, block: VertexBlock) -> None:

@@ -160,9 +160,9 @@ class Multires:
         if len(wanted) == 0:
             raise FovealError(f"{self.name}: no patch is shown at this cut; expand node 0 at least.")
         patches: list[codec.Patch] = []
+        inside = set(wanted.tolist())
         for node in np.unique(self.graph.owner[wanted]).tolist():
             first = int(self.graph.first_patch[node])
-            inside = set(wanted.tolist())
             patches += [p for i, p in enumerate(self.node_patches(node), first) if i in inside]
         return self._joined(patches)
 
