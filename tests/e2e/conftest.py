@@ -34,8 +34,9 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.timeout(180))  # a page that never rests shall not hold up the rest
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
+    """For one file only: while Playwright is open, no other test of the thread can run an event loop."""
     program = next((found for name in NAMES if (found := shutil.which(name))), None)
     if program is None:
         sentence = "No Chromium was found, so the viewer is not tested. Install Debian's package chromium."
