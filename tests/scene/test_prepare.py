@@ -10,7 +10,7 @@ from foveal import FovealError
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import icosphere
 from foveal.scene import prepare as module
-from foveal.scene.prepare import BuildOptions, load, prepare, prepare_mesh
+from foveal.scene.prepare import BuildOptions, build_file, load, prepare, prepare_mesh
 
 
 @pytest.fixture
@@ -135,3 +135,21 @@ def test_a_scene_of_a_mesh_has_its_name(tmp_path, ball):
 def test_what_is_not_there_is_said(tmp_path, name, sentence):
     with pytest.raises(FovealError, match=sentence):
         prepare(tmp_path / name, folder=tmp_path / "cache")
+
+
+def test_a_first_run_says_so_before_anything_is_compiled(tmp_path, monkeypatch):
+    said = []
+
+    class Listener:
+        def note(self, sentence):
+            said.append(sentence)
+
+    def opening(*_, **__):
+        raise FovealError("opened")
+
+    monkeypatch.setattr("foveal.base.jit.is_cold", lambda: True)
+    monkeypatch.setattr("foveal.mesh.io.open_source", opening)
+    (tmp_path / "a.obj").write_text("v 0 0 0\n")
+    with pytest.raises(FovealError, match="opened"):
+        build_file(tmp_path / "a.obj", tmp_path / "a.fov", progress=Listener())
+    assert "kernels are compiled" in said[0]

@@ -102,14 +102,14 @@ def build_file(
     from foveal.base.jit import is_cold
     from foveal.mesh.io import open_source, source_from_mesh
 
+    if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
+        progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     if isinstance(source, TriMesh):
         mesh = source_from_mesh(source, up=options.up or "y")
     else:
         refuse_missing(Path(source))
         is_built = Path(source).suffix.lower() == ".fov"
         mesh = (multires.source_of if is_built else open_source)(source, up=options.up)
-    if is_cold():
-        progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     return multires.build(mesh, Path(output), progress=progress, **options.arguments(), **work)
 
 
