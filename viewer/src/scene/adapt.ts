@@ -8,7 +8,10 @@
  * What motion learned is kept for the next motion. A still picture is drawn once, so it may take its time.
  */
 const AIM_MS = 25; // 40 frames a second: above a 60 Hz screen's 16.7, below its missed frame's 33.3
-const GAIN = 0.12;
+const GAIN = 0.12; // with the median's delay of two frames, the most that does not overshoot (4/27)
+/** Far too slow, it hurries: a software rasteriser got there in a dozen frames, each a third of a second. */
+const HURRIED_MS = 2 * AIM_MS;
+const HURRIED_GAIN = 0.4;
 const MOST_RAISED = 16;
 /** Longer pauses are not slow frames: the page was hidden, or something else blocked it. */
 const LONGEST_MS = 400;
@@ -30,7 +33,8 @@ export class ErrorTarget {
     this.#recent.push(Math.min(milliseconds, LONGEST_MS));
     if (this.#recent.length > 5) this.#recent.shift();
     const median = [...this.#recent].sort((a, b) => a - b)[this.#recent.length >> 1]!;
-    const next = this.#raised + GAIN * Math.log(median / AIM_MS);
+    const gain = median > HURRIED_MS ? HURRIED_GAIN : GAIN;
+    const next = this.#raised + gain * Math.log(median / AIM_MS);
     this.#raised = Math.min(Math.log(MOST_RAISED), Math.max(0, next));
   }
 
