@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Reporter", "counted", "print_json", "reporter", "table"]
 
 _LINE_EVERY_S = 5.0
+_FIRST_SHARE = 0.05  # below, an estimate would mostly be of how long kernels take to compile
 
 
 def print_json(data: Any) -> None:
@@ -92,6 +93,8 @@ class _LineStage:
         if not self._total or not self._done:
             return f"{spent:.0f} s so far"
         share = min(1.0, self._done / self._total)
+        if share < _FIRST_SHARE:
+            return f"{100 * share:.0f} %"
         return f"{100 * share:.0f} %, about {spent * (1 - share) / share:.0f} s left"
 
     def __enter__(self) -> Self:
