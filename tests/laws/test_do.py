@@ -57,7 +57,7 @@ def test_it_knows_which_options_take_a_value(do):
     assert known == {"bind" if name == "host" else name for name in set(view.__annotations__) - flags}
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one child alone")
 def test_ctrl_c_lets_the_child_end_in_its_own_time_and_with_its_own_code():
     child = "import time\nprint(1, flush=True)\ntry: time.sleep(30)\n"
     child += "except KeyboardInterrupt: time.sleep(1); exit(7)"

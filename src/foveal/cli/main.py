@@ -13,3 +13,7 @@ def run() -> None:
         app(prog_name="foveal")
     except KeyboardInterrupt:
         sys.exit(130)
+    finally:
+        # An interrupt within exec of a string (dataclasses and Numba use it) leaves a mark by which CPython
+        # ends itself with SIGINT whatever the exit code is; the next such exec takes the mark away.
+        exec("")
