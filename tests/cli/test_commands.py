@@ -115,6 +115,21 @@ def test_publish(run, ball, tmp_path, monkeypatch):
     assert run("info", tmp_path / "again" / "scene.json").exit_code == 0
 
 
+class Server:
+    """Stands in for one that runs."""
+
+    url = "http://here/"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def wait(self):
+        pass
+
+
 @pytest.mark.parametrize("words", [["view"], []])
 def test_view_serves_what_it_is_given(run, ball_mesh, tmp_path, monkeypatch, words):
     viewer = tmp_path / "viewer"
@@ -122,15 +137,23 @@ def test_view_serves_what_it_is_given(run, ball_mesh, tmp_path, monkeypatch, wor
     (viewer / "index.html").write_text("<!doctype html>")
     monkeypatch.setattr("foveal.scene.viewer_files._BUILT", viewer)
     served = []
-    monkeypatch.setattr("foveal.server.run.serve", lambda scene, **options: served.append((scene, options)))
-    for _ in range(2):
-        answer = run(*words, ball_mesh, "--no-browser", "--port", "0")
-        assert answer.exit_code == 0, answer.stderr
-    (scene, options), (again, _) = served
-    assert scene.title == "ball"
-    assert scene == again
+
+    def start(scene, **options):
+        served.append((scene, options))
+        return Server()
+
+    monkeypatch.setattr("foveal.server.view.start", start)
+    monkeypatch.setattr("webbrowser.open", None)
+    for more, told in (
+        ([], "http://here/   (Ctrl-C ends it)\n"),
+        (["-q"], "http://here/\n"),
+        (["--json"], '{\n "url": "http://here/"\n}\n'),
+    ):
+        answer = run(*words, ball_mesh, "--no-browser", "--port", "0", *more)
+        assert (answer.exit_code, answer.stdout) == (0, told), answer.stderr
+    assert {scene.title for scene, _ in served} == {"ball"}
     assert len(list((tmp_path / "cache").iterdir())) == 1
-    assert (options["open_browser"], options["port"], options["host"]) == (False, 0, "127.0.0.1")
+    assert all((options["port"], options["host"]) == (0, "127.0.0.1") for _, options in served)
 
 
 def test_help_names_every_command_and_every_option_has_its_line(run):

@@ -142,9 +142,7 @@ def test_no_memory_and_full_disks_are_said(run, ball, monkeypatch):
         (MemoryError(), "--memory"),
         (OSError(28, "No space left on device", "/x"), "No space left"),
     ):
-        monkeypatch.setattr(
-            "foveal.scene.info.info", lambda *_, error=error, **__: (_ for _ in ()).throw(error)
-        )
+        monkeypatch.setattr("foveal.info", lambda *_, error=error, **__: (_ for _ in ()).throw(error))
         assert_one_sentence(run("info", ball), part)
 
 

@@ -10,7 +10,9 @@ from foveal import FovealError
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import icosphere
 from foveal.scene import prepare as module
-from foveal.scene.prepare import BuildOptions, build_file, load, prepare, prepare_mesh
+from foveal.scene import scene_of, write_scene
+from foveal.scene.build import build
+from foveal.scene.prepare import load, prepare
 
 
 @pytest.fixture
@@ -24,13 +26,13 @@ def ball(tmp_path):
 def builds(monkeypatch):
     """The outputs of builds, in order."""
     made = []
-    real = module.build_file
+    real = module.build
 
     def counted(source, output, /, **options):
         made.append(output)
         return real(source, output, **options)
 
-    monkeypatch.setattr(module, "build_file", counted)
+    monkeypatch.setattr(module, "build", counted)
     return made
 
 
@@ -57,8 +59,8 @@ def test_a_copy_under_the_same_content_is_the_same(tmp_path, ball, builds):
 
 def test_a_changed_file_or_option_is_built_anew(tmp_path, ball, builds):
     found = {prepare(ball, folder=tmp_path / "cache")}
-    found.add(prepare(ball, folder=tmp_path / "cache", options=BuildOptions(bits=10)))
-    found.add(prepare(ball, folder=tmp_path / "cache", options=BuildOptions(up="z")))
+    found.add(prepare(ball, folder=tmp_path / "cache", bits=10))
+    found.add(prepare(ball, folder=tmp_path / "cache", up="z"))
     write_ply(icosphere(2, radius=1.5), ball)
     found.add(prepare(ball, folder=tmp_path / "cache"))
     assert len(found) == len(builds) == 4
@@ -73,19 +75,19 @@ def test_changed_code_builds_anew(tmp_path, ball, monkeypatch):
 def test_large_files_are_told_by_their_ends_and_their_time(tmp_path, ball, monkeypatch):
     monkeypatch.setattr(module, "_WHOLE", 100)
     monkeypatch.setattr(module, "_END", 50)
-    first = module._fingerprint(ball, BuildOptions())
-    assert module._fingerprint(ball, BuildOptions()) == first
+    first = module._fingerprint(ball, {})
+    assert module._fingerprint(ball, {}) == first
     os.utime(ball, ns=(0, ball.stat().st_mtime_ns + 1))
-    assert module._fingerprint(ball, BuildOptions()) != first
+    assert module._fingerprint(ball, {}) != first
 
 
 def test_a_changed_texture_is_a_changed_model(tmp_path):
     model = tmp_path / "model.obj"
     model.write_text("mtllib model.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    before = module._fingerprint(model, BuildOptions())
+    before = module._fingerprint(model, {})
     (tmp_path / "textures").mkdir()
     (tmp_path / "textures" / "skin.png").write_bytes(b"1")
-    assert module._fingerprint(model, BuildOptions()) != before
+    assert module._fingerprint(model, {}) != before
 
 
 def test_the_least_used_go_first_and_the_new_one_stays(tmp_path, ball):
@@ -98,7 +100,7 @@ def test_the_least_used_go_first_and_the_new_one_stays(tmp_path, ball):
         os.utime(path, ns=(now - (age + 1) * 10**12, now))
     built = prepare(ball, folder=cache, limit_bytes=250_000)
     assert {path.stem for path in cache.iterdir()} == {built.stem, "newest", "middle"}
-    other = prepare(ball, folder=cache, limit_bytes=1, options=BuildOptions(bits=9))
+    other = prepare(ball, folder=cache, limit_bytes=1, bits=9)
     assert list(cache.iterdir()) == [other]
 
 
@@ -121,13 +123,14 @@ def test_a_failed_build_leaves_nothing(tmp_path):
 
 
 def test_a_mesh_in_memory_is_built_once_too(tmp_path, builds):
-    paths = {prepare_mesh(icosphere(2), folder=tmp_path / "cache") for _ in range(2)}
-    paths.add(prepare_mesh(icosphere(2, radius=2.0), folder=tmp_path / "cache"))
+    paths = {prepare(icosphere(2), folder=tmp_path / "cache") for _ in range(2)}
+    paths.add(prepare(icosphere(2, radius=2.0), folder=tmp_path / "cache"))
     assert len(paths) == len(builds) == 2
 
 
-def test_a_scene_of_a_mesh_has_its_name(tmp_path, ball):
-    scene = load(ball, folder=tmp_path / "cache")
+def test_a_scene_of_a_mesh_has_its_name(tmp_path, ball, monkeypatch):
+    monkeypatch.setattr(module, "cache_folder", lambda: tmp_path / "cache")
+    scene = load(ball)
     assert scene.title == scene.layers[0].name == "my ball"
 
 
@@ -151,5 +154,25 @@ def test_a_first_run_says_so_before_anything_is_compiled(tmp_path, monkeypatch):
     monkeypatch.setattr("foveal.mesh.io.open_source", opening)
     (tmp_path / "a.obj").write_text("v 0 0 0\n")
     with pytest.raises(FovealError, match="opened"):
-        build_file(tmp_path / "a.obj", tmp_path / "a.fov", progress=Listener())
+        build(tmp_path / "a.obj", tmp_path / "a.fov", progress=Listener())
     assert "kernels are compiled" in said[0]
+
+
+@pytest.mark.parametrize("option", [{"bits": 9}, {"step": 0.1}, {"normals": "none"}, {"up": "z"}])
+def test_options_that_come_too_late_are_said(tmp_path, fov, option):
+    write_scene(scene_of(fov), tmp_path / "scene.json")
+    for source in (fov, tmp_path / "scene.json", scene_of(fov)):
+        with pytest.raises(FovealError, match=f"built already, so {next(iter(option))} would"):
+            load(source, **option)
+    load(fov, memory_bytes=10**9, workers=1, bits=None)  # these change no byte
+
+
+def test_an_option_that_there_is_not_is_the_programmers_fault(ball, fov, tmp_path):
+    for source in (ball, fov):
+        with pytest.raises(TypeError, match="bit"):
+            prepare(source, folder=tmp_path / "cache", bit=9)
+
+
+def test_a_scene_is_taken_as_it_is(fov):
+    scene = scene_of(fov)
+    assert load(scene) is scene

@@ -102,9 +102,11 @@ def test_ctrl_c_is_how_a_server_ends_and_no_failure(scene, viewer):
     program = """
 from pathlib import Path
 from foveal.scene import Layer, Scene
-from foveal.server import serve
+from foveal.server import start
 scene = Scene("t", (Layer("t", Path(sys.argv[1])),))
-serve(scene, port=0, open_browser=False, viewer=sys.argv[2], announce=lambda url: print(url, flush=True))
+running = start(scene, port=0, viewer=sys.argv[2])
+print(running.url, flush=True)
+running.wait()
 """
     source = str(Path(__file__).parents[2] / "src")
     child = subprocess.Popen(

@@ -1,9 +1,11 @@
-"""Outputs that appear whole or not at all, and scratch space that leaves no litter.
+"""Outputs that appear whole or not at all, scratch space that leaves no litter, and a sentence, before any
+work, for what cannot be read or written.
 
-Both put the writer's process number into the name, so that the next run can tell what a killed one
-left behind from what a running one still needs.
+Outputs and scratch have the writer's process number in the name, so that the next run can tell what a killed
+one left behind from what a running one still needs.
 """
 
+import json
 import os
 import re
 import shutil
@@ -11,13 +13,78 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import psutil
 
 from .errors import FovealError
 
-__all__ = ["refuse_unwritable", "scratch", "whole_file", "whole_folder"]
+__all__ = [
+    "PathLike",
+    "read_json",
+    "refuse_missing",
+    "refuse_same",
+    "refuse_unwritable",
+    "scratch",
+    "whole_file",
+    "whole_folder",
+]
+
+PathLike = str | os.PathLike[str]
+
+_JSON_BYTES = 16 << 20  # a scene or a camera is small; more than this is something else
+
+
+def refuse_missing(path: PathLike, /) -> None:
+    """Say before any work that there is no file to read.
+
+    Raises
+    ------
+    FovealError
+        If there is nothing at `path`, or a folder, or a pipe or device, which cannot be read twice.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise FovealError(f"{path}: this is a folder; name a file.")
+    if not path.exists():
+        raise FovealError(f"{path}: there is no such file.")
+    if not path.is_file():
+        raise FovealError(f"{path}: this is a pipe or a device; name a file.")
+
+
+def refuse_same(output: PathLike, source: PathLike, /) -> None:
+    """Say before any work that an output would replace what it is made from.
+
+    Raises
+    ------
+    FovealError
+        If both are one file, by whatever names.
+    """
+    output, source = Path(output), Path(source)
+    if output.exists() and source.exists() and output.samefile(source):
+        raise FovealError(f"{output}: this is the input itself. Name another output.")
+
+
+def read_json(path: PathLike, /) -> Any:
+    """What a small JSON file holds.
+
+    Raises
+    ------
+    FovealError
+        If it is missing, cannot be read, is large, or is not JSON.
+    """
+    refuse_missing(path)
+    try:
+        with Path(path).open("rb") as stream:
+            text = stream.read(_JSON_BYTES + 1)
+    except OSError as error:
+        raise FovealError(f"{path}: cannot be read ({error.strerror}). Check its permissions.") from error
+    if len(text) > _JSON_BYTES:
+        raise FovealError(f"{path}: it is too large for such a file. Check which one it is.")
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FovealError(f"{path}: this is not JSON ({error}). Correct it, or name another.") from error
 
 
 def _sweep(folder: Path, pattern: str) -> None:
@@ -42,7 +109,7 @@ def _part(path: Path) -> Path:
     return path.with_name(f".{path.name}.{os.getpid()}.part")
 
 
-def refuse_unwritable(path: str | os.PathLike[str], *, is_folder: bool = False) -> None:
+def refuse_unwritable(path: PathLike, /, *, is_folder: bool = False) -> None:
     """Say before any work that `whole_file`, or `whole_folder`, could not write `path`.
 
     Nothing is made, nor are folders on the way.
@@ -70,7 +137,7 @@ def _unwritable(path: Path, error: OSError) -> FovealError:
 
 
 @contextmanager
-def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
+def whole_file(path: PathLike, /) -> Iterator[BinaryIO]:
     """Open `path` for writing such that it appears by rename when the block ends without an error.
 
     Folders on the way are made. A block that raises, or a process that is killed, leaves what was at
@@ -95,7 +162,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
 
 
 @contextmanager
-def whole_folder(path: str | os.PathLike[str], *, force: bool = False) -> Iterator[Path]:
+def whole_folder(path: PathLike, /, *, force: bool = False) -> Iterator[Path]:
     """Give a folder to fill that appears as `path` when the block ends without an error.
 
     A folder that is there already and not empty is refused unless `force`, which replaces it.
@@ -121,7 +188,7 @@ def whole_folder(path: str | os.PathLike[str], *, force: bool = False) -> Iterat
 
 
 @contextmanager
-def scratch(folder: str | os.PathLike[str] | None = None) -> Iterator[Path]:
+def scratch(folder: PathLike | None = None, /) -> Iterator[Path]:
     """Give an empty folder for temporary files, in `folder` or the system's place, deleted at the end."""
     root = Path(folder) if folder is not None else Path(tempfile.gettempdir())
     root.mkdir(parents=True, exist_ok=True)

@@ -1,16 +1,18 @@
 """foveal check: is a file whole, and are its promises true."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from .options import Debug, Json, Quiet, Source, Verbose
-from .report import print_json, reporter
+from .groups import takes, telling
+from .options import Source
+from .report import Telling
 
 __all__ = ["check"]
 
 
+@takes(telling)
 def check(
     file: Source,
     deep: Annotated[
@@ -21,22 +23,17 @@ def check(
         Path | None,
         typer.Option(metavar="MESH", help="With --deep: measure against this mesh, not the finest level."),
     ] = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    debug: Debug = False,
+    *,
+    telling: Telling,
 ) -> None:
     """Verify a .fov, or every file of a scene.json.
 
     Checksums, structure and every patch. Exits with 1 if anything is wrong.
     """
-    from foveal.scene.check import check as verify
+    import foveal
 
     if original is not None and not deep:
         raise typer.BadParameter("it is for --deep. Add that.", param_hint="--original")
-    with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
-        facts: dict[str, Any] = verify(file, deep=deep, original=original, progress=progress)
-    if json:
-        print_json(facts)
-    elif not quiet:
-        print(f"{file}: whole, and every promise holds." if deep else f"{file}: whole.")
+    with telling.progress() as progress:
+        facts = foveal.check(file, deep=deep, original=original, progress=progress)
+    telling.result(facts, f"{file}: whole, and every promise holds." if deep else f"{file}: whole.")

@@ -1,17 +1,23 @@
 """foveal export: a mesh file of a chosen fineness."""
 
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Debug, Force, Json, Memory, Quiet, Source, Up, Verbose, Workers
-from .report import counted, print_json, reporter
-from .work import build_arguments, refuse_existing
+from .groups import building, takes, telling
+from .options import Force, Source
+from .output import refuse_output
+from .report import Telling, counted
+
+if TYPE_CHECKING:
+    from foveal.scene.build import BuildOptions
 
 __all__ = ["export"]
 
 
+@takes(building, telling)
 def export(
     file: Source,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Ends in .ply or .glb.")],
@@ -27,57 +33,26 @@ def export(
         int | None, typer.Option(min=1, metavar="N", help="As fine as N triangles allow, instead of --error.")
     ] = None,
     force: Force = False,
-    up: Up = None,
-    memory: Memory = None,
-    workers: Workers = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    debug: Debug = False,
+    *,
+    building: AbstractContextManager["BuildOptions"],
+    telling: Telling,
 ) -> None:
     """Write a PLY or GLB, whole or coarser.
 
     Without --error and --triangles every triangle is written. GLB is y up and float32 about a translation;
     PLY keeps the coordinates as they are.
     """
-    from foveal.scene.export import export as write
+    import foveal
 
     if error is not None and triangles is not None:
         raise typer.BadParameter(
             "it says in another way what --error says. Give one.", param_hint="--triangles"
         )
-    if output.suffix.lower() not in (".ply", ".glb"):
-        raise typer.BadParameter(
-            f"{output}: the name must end in .ply or .glb, which says the format.", param_hint="--output"
-        )
-    refuse_existing(output, force=force)
-    with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
-        mesh = write(
-            file,
-            output,
-            error=error,
-            triangles=triangles,
-            **build_arguments(
-                bits=None,
-                step=None,
-                normals=None,
-                up=up,
-                memory=memory,
-                workers=workers,
-                executor=None,
-                progress=progress,
-            ),
-        )
-    facts = {
-        "file": str(output),
-        "bytes": output.stat().st_size,
-        "triangles": len(mesh.faces),
-        "vertices": len(mesh.positions),
-    }
-    if json:
-        print_json(facts)
-    elif not quiet:
-        counts = (
-            f"{counted(len(mesh.faces), 'triangle')}, {counted(len(mesh.positions), 'vertex', 'vertices')}"
-        )
-        print(f"{output}: {counts}, {facts['bytes']:,} bytes")
+    refuse_output(output, file, ".ply", ".glb", force=force)
+    with telling.progress() as progress, building as options:
+        mesh = foveal.export(file, output, error=error, triangles=triangles, progress=progress, **options)
+    faces, vertices, size = len(mesh.faces), len(mesh.positions), output.stat().st_size
+    telling.result(
+        {"file": str(output), "bytes": size, "triangles": faces, "vertices": vertices},
+        f"{output}: {counted(faces, 'triangle')}, {counted(vertices, 'vertex', 'vertices')}, {size:,} bytes",
+    )

@@ -13,9 +13,9 @@ def info(file: Source, up: Up = None, json: Json = False, debug: Debug = False) 
 
     Of a .fov only the beginning is read: quick for any size. A mesh is read whole, its defects counted.
     """
-    from foveal.scene.info import info as look
+    import foveal
 
-    facts = look(file, up=None if up is None else up.value)
+    facts = foveal.info(file, up=None if up is None else up.value)
     if json:
         print_json(facts)
     elif facts["kind"] == "scene":

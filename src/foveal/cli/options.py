@@ -11,21 +11,18 @@ __all__ = [
     "Bits",
     "Dask",
     "Debug",
-    "ErrorPx",
     "Force",
     "Json",
     "Memory",
     "Normals",
     "NormalsKind",
     "Quiet",
-    "Size",
     "Source",
     "Step",
     "Up",
     "UpAxis",
     "Verbose",
     "Workers",
-    "parse_picture_size",
     "parse_size",
 ]
 
@@ -48,22 +45,6 @@ def parse_size(text: str) -> int:
     if size < 1:
         raise typer.BadParameter("the size must be at least one byte.")
     return size
-
-
-def parse_picture_size(text: str) -> tuple[int, int]:
-    """Width and height from 1280x720.
-
-    Examples
-    --------
-    >>> parse_picture_size("1280x720")
-    (1280, 720)
-    """
-    match = re.fullmatch(r"\s*([0-9]{1,5})\s*[x×]\s*([0-9]{1,5})\s*", text.lower())
-    if match is None or not 1 <= int(match[1]) <= 16384 or not 1 <= int(match[2]) <= 16384:
-        raise typer.BadParameter(
-            f"{text!r} is not a size in pixels up to 16384; write for instance 1280x720.", param_hint="--size"
-        )
-    return int(match[1]), int(match[2])
 
 
 class UpAxis(enum.StrEnum):
@@ -112,7 +93,7 @@ Normals = Annotated[
 Up = Annotated[
     UpAxis | None,
     typer.Option(
-        help="Axis that points up; by default the format's (y; LAS z). Data is never rotated.",
+        help="Axis of the input that points up; by default y. Data is never rotated.",
     ),
 ]
 Memory = Annotated[
@@ -143,13 +124,3 @@ Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON on 
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress and no notes; errors only.")]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Say how long each stage took.")]
 Debug = Annotated[bool, typer.Option("--debug", help="On an error, show where in the code it arose.")]
-Size = Annotated[
-    str | None,
-    typer.Option(metavar="WxH", help="Picture size in pixels, e.g. 1280x720, which is the default."),
-]
-ErrorPx = Annotated[
-    float,
-    typer.Option(
-        min=0.0, metavar="PX", help="How wrong the surface may look, in pixels. Larger is faster and coarser."
-    ),
-]

@@ -1,62 +1,41 @@
 """foveal publish: a folder for any web server."""
 
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Bits, Debug, Json, Memory, Normals, Quiet, Source, Step, Up, Verbose, Workers
-from .report import print_json, reporter
-from .work import build_arguments, refuse_missing
+from .groups import building, takes, telling
+from .options import Source
+from .report import Telling
+
+if TYPE_CHECKING:
+    from foveal.scene.build import BuildOptions
 
 __all__ = ["publish"]
 
 
+@takes(building, telling)
 def publish(
     file: Source,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="New or empty.")],
     force: Annotated[bool, typer.Option("--force", help="Replace what was published there before.")] = False,
-    bits: Bits = None,
-    step: Step = None,
-    normals: Normals = None,
-    up: Up = None,
-    memory: Memory = None,
-    workers: Workers = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    debug: Debug = False,
+    *,
+    building: AbstractContextManager["BuildOptions"],
+    telling: Telling,
 ) -> None:
     """Make a web site: static files for any server.
 
     Servers that answer byte ranges send only what is looked at; without ranges it works too.
     """
-    from foveal.scene.prepare import load
-    from foveal.scene.publish import publish as write
-    from foveal.scene.publish import refuse_folder
-    from foveal.scene.viewer_files import viewer_files
+    import foveal
 
-    refuse_missing(file)
-    viewer_files()  # before minutes of building
-    refuse_folder(output, force=force)
-    with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
-        scene = load(
-            file,
-            **build_arguments(
-                bits=bits,
-                step=step,
-                normals=normals,
-                up=up,
-                memory=memory,
-                workers=workers,
-                executor=None,
-                progress=progress,
-            ),
-        )
-        write(scene, output, force=force, progress=progress)
+    with telling.progress() as progress, building as options:
+        foveal.publish(file, output, force=force, progress=progress, **options)
     files = [path for path in output.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)
-    if json:
-        print_json({"folder": str(output), "files": len(files), "bytes": size})
-    elif not quiet:
-        print(f"{output}: {len(files)} files, {size:,} bytes. README.txt in it says how to host them.")
+    telling.result(
+        {"folder": str(output), "files": len(files), "bytes": size},
+        f"{output}: {len(files)} files, {size:,} bytes. README.txt in it says how to host them.",
+    )

@@ -1,30 +1,24 @@
 """foveal render: a picture without a GPU or a display."""
 
+import re
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import (
-    Debug,
-    ErrorPx,
-    Force,
-    Json,
-    Memory,
-    Quiet,
-    Size,
-    Source,
-    Up,
-    Verbose,
-    Workers,
-    parse_picture_size,
-)
-from .report import print_json, reporter
-from .work import build_arguments, refuse_existing
+from .groups import building, takes, telling
+from .options import Force, Source
+from .output import refuse_output
+from .report import Telling
+
+if TYPE_CHECKING:
+    from foveal.scene.build import BuildOptions
 
 __all__ = ["render"]
 
 
+@takes(building, telling)
 def render(
     file: Source,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.png", help="The picture to write.")],
@@ -35,8 +29,18 @@ def render(
             help="Position, target, up, field of view in degrees. By default all is framed.",
         ),
     ] = None,
-    size: Size = None,
-    error_px: ErrorPx = 1.0,
+    size: Annotated[
+        str | None,
+        typer.Option(metavar="WxH", help="Picture size in pixels; by default the camera's, or 1280x720."),
+    ] = None,
+    error_px: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            metavar="PX",
+            help="How wrong the surface may look, in pixels. Larger is faster and coarser.",
+        ),
+    ] = 1.0,
     triangles: Annotated[
         int | None,
         typer.Option(
@@ -44,46 +48,47 @@ def render(
         ),
     ] = None,
     force: Force = False,
-    up: Up = None,
-    memory: Memory = None,
-    workers: Workers = None,
-    json: Json = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    debug: Debug = False,
+    *,
+    building: AbstractContextManager["BuildOptions"],
+    telling: Telling,
 ) -> None:
     """Draw a PNG, the same pixels on every machine.
 
     Needs no GPU and no display.
     """
+    import foveal
+
     wanted = None if size is None else parse_picture_size(size)
-    if output.suffix.lower() != ".png":
-        raise typer.BadParameter(f"{output}: the name must end in .png.", param_hint="--output")
-    refuse_existing(output, force=force)
-
-    from foveal.raster import write_png
-    from foveal.scene.prepare import load
-    from foveal.scene.render import frame, read_camera
-    from foveal.scene.render import render as draw
-
-    with reporter(is_quiet=quiet, is_verbose=verbose) as progress:
-        eye = None if camera is None else read_camera(camera, size=wanted)
-        scene = load(
+    refuse_output(output, file, ".png", force=force)
+    with telling.progress() as progress, building as options:
+        picture = foveal.render(
             file,
-            **build_arguments(
-                bits=None,
-                step=None,
-                normals=None,
-                up=up,
-                memory=memory,
-                workers=workers,
-                executor=None,
-                progress=progress,
-            ),
+            output,
+            camera=camera,
+            size=wanted,
+            error_px=error_px,
+            triangles=triangles,
+            progress=progress,
+            **options,
         )
-        eye = eye or frame(scene, size=wanted or (1280, 720))
-        write_png(draw(scene, eye, error_px=error_px, triangle_budget=triangles), output)
-    if json:
-        print_json({"file": str(output), "bytes": output.stat().st_size, "camera": eye.to_json()})
-    elif not quiet:
-        print(f"{output}: {eye.width} x {eye.height} pixels")
+    eye = picture.camera
+    telling.result(
+        {"file": str(output), "bytes": output.stat().st_size, "camera": eye and eye.to_json()},
+        f"{output}: {picture.shape[1]} x {picture.shape[0]} pixels",
+    )
+
+
+def parse_picture_size(text: str) -> tuple[int, int]:
+    """Width and height from 1280x720.
+
+    Examples
+    --------
+    >>> parse_picture_size("1280x720")
+    (1280, 720)
+    """
+    match = re.fullmatch(r"\s*([0-9]{1,5})\s*[x×]\s*([0-9]{1,5})\s*", text.lower())
+    if match is None or not 1 <= int(match[1]) <= 16384 or not 1 <= int(match[2]) <= 16384:
+        raise typer.BadParameter(
+            f"{text!r} is not a size in pixels up to 16384; write for instance 1280x720.", param_hint="--size"
+        )
+    return int(match[1]), int(match[2])

@@ -4,6 +4,7 @@ import json
 import math
 import sys
 import time
+from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
     from rich.progress import TaskID
 
-__all__ = ["Reporter", "counted", "print_json", "reporter", "table"]
+__all__ = ["Reporter", "Telling", "counted", "print_json", "reporter", "table"]
 
 _LINE_EVERY_S = 5.0
 _FIRST_SHARE = 0.05  # below, an estimate would mostly be of how long kernels take to compile
@@ -21,7 +22,7 @@ _FIRST_SHARE = 0.05  # below, an estimate would mostly be of how long kernels ta
 
 def print_json(data: Any) -> None:
     """The one thing on stdout."""
-    print(json.dumps(_plain(data), indent=1, ensure_ascii=False, allow_nan=False))
+    print(json.dumps(_plain(data), indent=1, ensure_ascii=False, allow_nan=False), flush=True)
 
 
 def _plain(value: Any) -> Any:
@@ -35,6 +36,36 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value if value is None or isinstance(value, (str, int, float, bool)) else str(value)
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """How a command speaks: what it is doing on stderr, its result on stdout.
+
+    Attributes
+    ----------
+    is_json : bool
+        The result is for programs.
+    is_quiet, is_verbose : bool
+        No progress, no notes and no result in words; or each stage's time as well.
+    """
+
+    is_json: bool
+    is_quiet: bool
+    is_verbose: bool
+
+    def progress(self) -> "Reporter":
+        """Who tells of the work: `with telling.progress() as progress`."""
+        return reporter(is_quiet=self.is_quiet, is_verbose=self.is_verbose)
+
+    def result(self, facts: dict[str, Any], /, *lines: str, brief: str | None = None) -> None:
+        """All facts as JSON where that was asked for, else lines in words, or `brief` where quiet."""
+        if self.is_json:
+            print_json(facts)
+        elif not self.is_quiet:
+            print(*lines, sep="\n", flush=True)
+        elif brief is not None:
+            print(brief, flush=True)
 
 
 class Reporter:

@@ -1,16 +1,21 @@
 """foveal view: build if needed, serve, open the browser."""
 
-from typing import Annotated
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Bits, Dask, Debug, Memory, Normals, Quiet, Source, Step, Up, Verbose, Workers
-from .report import reporter
-from .work import build_arguments, dask_executor, refuse_missing
+from .groups import building, takes, telling
+from .options import Source
+from .report import Telling
+
+if TYPE_CHECKING:
+    from foveal.scene.build import BuildOptions
 
 __all__ = ["view"]
 
 
+@takes(building, telling)
 def view(
     file: Source,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
@@ -26,44 +31,22 @@ def view(
             "--bind", metavar="ADDRESS", help="Address to serve on. 0.0.0.0 lets other machines in."
         ),
     ] = "127.0.0.1",
-    bits: Bits = None,
-    step: Step = None,
-    normals: Normals = None,
-    up: Up = None,
-    memory: Memory = None,
-    workers: Workers = None,
-    dask: Dask = None,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    debug: Debug = False,
+    *,
+    building: AbstractContextManager["BuildOptions"],
+    telling: Telling,
 ) -> None:
     """Show a mesh, a .fov or a scene.json in the browser.
 
     A mesh is built first, with a progress bar; the result is kept in your cache (10 GB, the least used go
     first), so that the second time is at once. Ctrl-C ends the server.
     """
-    from foveal.scene.prepare import load
-    from foveal.scene.viewer_files import viewer_files
-    from foveal.server.run import serve
+    import foveal
 
-    refuse_missing(file)
-    viewer_files()  # if the viewer is missing, say so before minutes of building
-    with reporter(is_quiet=quiet, is_verbose=verbose) as progress, dask_executor(dask) as executor:
-        scene = load(
-            file,
-            **build_arguments(
-                bits=bits,
-                step=step,
-                normals=normals,
-                up=up,
-                memory=memory,
-                workers=workers,
-                executor=executor,
-                progress=progress,
-            ),
+    is_wanted = False if no_browser else None
+    with telling.progress() as progress, building as options:
+        running = foveal.view(
+            file, host=host, port=port, open_browser=is_wanted, progress=progress, **options
         )
-
-    def announce(url: str) -> None:
-        print(url if quiet else f"{url}   (Ctrl-C ends it)", flush=True)
-
-    serve(scene, host=host, port=port, open_browser=False if no_browser else None, announce=announce)
+    with running:
+        telling.result({"url": running.url}, f"{running.url}   (Ctrl-C ends it)", brief=running.url)
+        running.wait()

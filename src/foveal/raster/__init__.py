@@ -1,6 +1,6 @@
 """The CPU rasteriser: depth, G-buffers, shading, PNG. Deterministic, no GPU, no display."""
 
-from .picture import gradient, picture, write_png
+from .picture import Picture, gradient, picture, write_png
 from .rasterise import GBuffer, rasterise
 
-__all__ = ["GBuffer", "gradient", "picture", "rasterise", "write_png"]
+__all__ = ["GBuffer", "Picture", "gradient", "picture", "rasterise", "write_png"]

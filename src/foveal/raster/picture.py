@@ -1,14 +1,15 @@
 """A mesh and a camera to a picture, and the picture to a PNG."""
 
-import os
+import io
 from dataclasses import replace
+from typing import Any, BinaryIO, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from foveal.base.errors import FovealError
-from foveal.base.files import whole_file
+from foveal.base.files import PathLike, whole_file
 from foveal.base.tasks import Executor, threads
 from foveal.mesh.normals import vertex_normals
 from foveal.mesh.trimesh import TriMesh
@@ -18,11 +19,49 @@ from . import _kernels_shade as kernels
 from .rasterise import BAND_ROWS, Screen, run_all
 from .shade import PLASTER, shade_band, tables
 
-__all__ = ["Colour", "gradient", "picture", "write_png"]
+__all__ = ["Colour", "Picture", "gradient", "picture", "write_png"]
 
 Colour = tuple[int, int, int]
-_GRADIENT_ROWS = 64  # at once: a large picture's in float64 would not fit
 Background = Colour | NDArray[np.uint8] | None
+
+_GRADIENT_ROWS = 64  # at once: a large picture's in float64 would not fit
+
+
+class Picture(np.ndarray):
+    """(height, width, 3 or 4) uint8 sRGB: an array like any other, that a notebook shows as a picture.
+
+    A part of it is a picture too; what is computed from it is a plain array or number.
+
+    Attributes
+    ----------
+    camera : Camera or None
+        What it was drawn with; a part of a picture has none.
+
+    Examples
+    --------
+    >>> pixels = Picture.of(np.zeros((2, 3, 3), np.uint8))
+    >>> pixels._repr_png_()[1:4], type(pixels + 1).__name__, pixels.max()
+    (b'PNG', 'ndarray', np.uint8(0))
+    """
+
+    camera: Camera | None = None
+
+    @classmethod
+    def of(cls, pixels: NDArray[np.uint8], camera: Camera | None = None, /) -> Self:
+        """An array as a picture, contiguous; it is copied only if it is not."""
+        picture = np.ascontiguousarray(pixels).view(cls)
+        picture.camera = camera
+        return picture
+
+    def __array_wrap__(self, array: Any, context: Any = None, return_scalar: bool = False) -> Any:
+        return array[()] if return_scalar else np.asarray(array)
+
+    def _repr_png_(self) -> bytes | None:
+        if self.ndim != 3 or self.shape[2] not in (3, 4) or self.dtype != np.uint8 or not self.size:
+            return None  # a row, a channel: the notebook shows numbers
+        stream = io.BytesIO()
+        _save(self, stream)
+        return stream.getvalue()
 
 
 def picture(
@@ -36,7 +75,7 @@ def picture(
     has_colours: bool = True,
     plain: Colour = PLASTER,
     executor: Executor | None = None,
-) -> NDArray[np.uint8]:
+) -> Picture:
     """Draw a mesh as the viewer does: lit from the camera, smooth, from both sides.
 
     Parameters
@@ -58,8 +97,8 @@ def picture(
 
     Returns
     -------
-    (height, width, 4) uint8
-        sRGB and opacity, rows from the top. Colour is not multiplied by opacity.
+    Picture
+        (height, width, 4) uint8, sRGB and opacity, rows from the top. Colour is not multiplied by opacity.
 
     Raises
     ------
@@ -112,7 +151,7 @@ def picture(
         kernels.develop(*samples, supersampling, back, behind is not None, tables()[1], out[rows])
 
     run_all(executor, draw, range(-(-screen.bands // bands_a_group)))
-    return out
+    return Picture.of(out, camera)
 
 
 def _background(background: Background, camera: Camera) -> NDArray[np.uint8] | None:
@@ -153,7 +192,7 @@ def gradient(
     return out
 
 
-def write_png(pixels: NDArray[np.uint8], path: str | os.PathLike[str], /) -> None:
+def write_png(pixels: NDArray[np.uint8], path: PathLike, /) -> None:
     """Write a picture, (height, width, 3 or 4) uint8 sRGB, to a PNG file that appears when it is whole.
 
     Raises
@@ -162,4 +201,8 @@ def write_png(pixels: NDArray[np.uint8], path: str | os.PathLike[str], /) -> Non
         If `path` cannot be written.
     """
     with whole_file(path) as stream:
-        Image.fromarray(np.ascontiguousarray(pixels)).save(stream, format="PNG")
+        _save(pixels, stream)
+
+
+def _save(pixels: NDArray[np.uint8], stream: BinaryIO) -> None:
+    Image.fromarray(np.ascontiguousarray(pixels)).save(stream, format="PNG")

@@ -1,26 +1,25 @@
 """Whether a `.fov`, or every file of a scene, is whole and true."""
 
 import dataclasses
-import os
 from pathlib import Path
 from typing import Any
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, refuse_missing
 from foveal.base.progress import SILENT, Progress
-from foveal.mesh.trimesh import TriMesh
 
-from .prepare import refuse_missing
+from .read import read
 from .scene import read_scene
 
 __all__ = ["check"]
 
 
 def check(
-    source: str | os.PathLike[str],
+    source: PathLike,
     /,
     *,
     deep: bool = False,
-    original: str | os.PathLike[str] | None = None,
+    original: PathLike | None = None,
     progress: Progress = SILENT,
 ) -> dict[str, Any]:
     """Verify checksums, structure and every patch; with `deep`, measure the error bounds again.
@@ -46,6 +45,15 @@ def check(
     ------
     FovealError
         If anything is wrong, in a sentence that says what.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, foveal
+    >>> from foveal.mesh.shapes import icosphere
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "sphere.fov"
+    >>> report = foveal.build(icosphere(2), path)
+    >>> foveal.check(path)["is_whole"]
+    True
     """
     path = Path(source)
     refuse_missing(path)
@@ -56,7 +64,7 @@ def check(
     from foveal import multires
 
     if path.suffix.lower() == ".fov":
-        mesh = None if original is None else _read(Path(original))
+        mesh = None if original is None else read(original)
         report = multires.check(path, deep=deep, original=mesh, progress=progress)
         return {"file": str(path), "is_whole": True, **dataclasses.asdict(report)}
     if original is not None:
@@ -65,10 +73,3 @@ def check(
         )
     layers = [check(layer.path, deep=deep, progress=progress) for layer in read_scene(path).layers]
     return {"file": str(path), "is_whole": True, "layers": layers}
-
-
-def _read(original: Path) -> TriMesh:
-    from foveal.mesh.io import read_mesh
-
-    refuse_missing(original)
-    return read_mesh(original)

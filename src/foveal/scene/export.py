@@ -1,17 +1,19 @@
-"""A mesh file of a chosen fineness from a `.fov` or from another mesh file."""
+"""A mesh file of a chosen fineness from a `.fov` or from another mesh."""
 
-import os
 from pathlib import Path
-from typing import Any
+from typing import Unpack
 
 import numpy as np
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, refuse_missing, refuse_same, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
 from foveal.lod.graph import Graph
 from foveal.mesh.trimesh import TriMesh
 
-from .prepare import BuildOptions, prepare
+from .build import BuildOptions, Source
+from .prepare import prepare
+from .read import read
 
 __all__ = ["error_for_triangles", "export"]
 
@@ -19,29 +21,29 @@ _SUFFIXES = (".ply", ".glb")
 
 
 def export(
-    source: str | os.PathLike[str],
-    output: str | os.PathLike[str] | None = None,
+    source: Source,
+    output: PathLike | None = None,
     /,
     *,
     error: float | None = None,
     triangles: int | None = None,
     progress: Progress = SILENT,
-    **options: Any,
+    **options: Unpack[BuildOptions],
 ) -> TriMesh:
     """A mesh that is as coarse as an error or a number of triangles allows, and a PLY or GLB of it.
 
     Parameters
     ----------
-    source
-        A `.fov`, or a mesh file, which is built first if it has to become coarser.
-    output
-        Where to write, if anywhere; the suffix says the format.
+    source : path or TriMesh
+        A `.fov`, or a mesh, which is built into the user's cache first if it has to become coarser.
+    output : path, optional
+        Where to write it too; the suffix, `.ply` or `.glb`, says the format.
     error : float, optional
-        Largest distance to the original, in the unit of the file. By default, as of the original.
+        Largest distance to the original, in the unit of the file; by default the original's triangles.
     triangles : int, optional
         As fine as this many triangles allow; not together with `error`.
     progress, **options
-        As for `prepare`.
+        As for `build`.
 
     Returns
     -------
@@ -52,34 +54,54 @@ def export(
     ------
     FovealError
         If the format is not known, or even the coarsest level has more triangles than wanted.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, foveal
+    >>> from foveal.mesh.shapes import icosphere
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "sphere.fov"
+    >>> report = foveal.build(icosphere(2), path)
+    >>> len(foveal.export(path, path.with_suffix(".ply")).faces)
+    320
     """
     from foveal import multires
-    from foveal.lod.select import cut_by_error
-    from foveal.mesh.io import read_mesh
 
-    source, output = Path(source), None if output is None else Path(output)
-    if output is not None and output.suffix.lower() not in _SUFFIXES:
-        raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
-    if source.suffix.lower() == ".json":
-        raise FovealError(f"{source}: a scene.json is not exported whole; export its files one by one.")
+    name = "mesh" if isinstance(source, TriMesh) else str(source)
     if error is not None and triangles is not None:
         raise ValueError("give error or triangles, not both")
     if error is not None and not 0 <= error < float("inf"):
-        raise FovealError(f"{source}: the error must be a length, 0 or more, got {error}.")
+        raise FovealError(f"{name}: the error must be a length, 0 or more, got {error}.")
     if triangles is not None and triangles < 1:
-        raise FovealError(f"{source}: at least one triangle must be wanted, got {triangles}.")
-    chosen = options.get("options", BuildOptions())
-    if source.suffix.lower() != ".fov" and error is None and triangles is None:
-        mesh, up = read_mesh(source, up=chosen.up), chosen.up or "y"
+        raise FovealError(f"{name}: at least one triangle must be wanted, got {triangles}.")
+    if name.lower().endswith(".json"):
+        raise FovealError(f"{name}: a scene.json is not exported whole; export its files one by one.")
+    if output is not None:
+        _refuse_output(Path(output), source)
+    if isinstance(source, TriMesh):
+        is_built = False
     else:
+        refuse_missing(source)
+        is_built = Path(source).suffix.lower() == ".fov"
+    shaped = error, triangles, *(options.get(name) for name in ("bits", "step", "normals"))
+    if is_built or any(value is not None for value in shaped):
         with multires.open(prepare(source, progress=progress, **options)) as asset:
             if triangles is not None:
-                error = error_for_triangles(asset.graph, triangles, name=str(source))
-            mesh = asset.mesh_of(cut_by_error(asset.graph, error=error).expanded)
-            up = asset.header.get("up", "y")
+                error = error_for_triangles(asset.graph, triangles, name=name)
+            mesh, up = multires.extract(asset, error=error), asset.header.get("up", "y")
+    else:
+        mesh = source if isinstance(source, TriMesh) else read(source)
+        up = options.get("up") or "y"
     if output is not None:
-        _write(mesh, output, up)
+        _write(mesh, Path(output), up)
     return mesh
+
+
+def _refuse_output(output: Path, source: Source) -> None:
+    if output.suffix.lower() not in _SUFFIXES:
+        raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
+    if not isinstance(source, TriMesh):
+        refuse_same(output, source)
+    refuse_unwritable(output)
 
 
 def _write(mesh: TriMesh, output: Path, up: str) -> None:

@@ -8,50 +8,69 @@ import dataclasses
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, refuse_missing
 from foveal.container import Container, open_container
 
 from .scene import read_scene
 
+if TYPE_CHECKING:
+    from foveal.mesh.trimesh import TriMesh
+
 __all__ = ["info"]
 
 
-def info(source: str | os.PathLike[str], /, *, up: str | None = None) -> dict[str, Any]:
-    """Look into a file.
+def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str, Any]:
+    """Say what is in a `.fov`, a mesh or a scene.json.
 
     Parameters
     ----------
-    source
-        A `.fov`, a mesh file, or a scene.json.
-    up : str, optional
-        For mesh files, the axis that points up.
+    source : path or TriMesh
+        What to look into. Of a `.fov` only the beginning is read; a mesh is looked at whole.
+    up : "x", "y" or "z", optional
+        Of a mesh, the axis that points up, where it is not the format's own.
 
     Returns
     -------
     dict
         JSON can hold it. `kind` is "multires", "mesh" or "scene". For a `.fov`, `level_table` has a
         row for each level, coarse to fine: the triangles that are shown when all up to it is expanded,
-        their largest distance to the original (`error`, an upper bound), and the level's own bytes.
+        their largest distance to the original (`error`, an upper bound), and the level's own bytes. For a
+        mesh, `topology` counts components, open and non-manifold edges, and what else is odd.
 
     Raises
     ------
     FovealError
         If the file is missing or is not what it seems to be.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, foveal
+    >>> from foveal.mesh.shapes import icosphere
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "sphere.fov"
+    >>> report = foveal.build(icosphere(2), path)
+    >>> [row["triangles"] for row in foveal.info(path)["level_table"]][-1]
+    320
+    >>> foveal.info(icosphere(2))["topology"]["is_closed"]
+    True
     """
+    if not isinstance(source, (str, os.PathLike)):
+        return _mesh_info(source, None, up)
     path = Path(source)
-    if path.is_dir():
-        raise FovealError(f"{path}: this is a folder; name a file.")
-    if not path.exists():
-        raise FovealError(f"{path}: there is no such file.")
+    refuse_missing(path)
     suffix = path.suffix.lower()
-    if suffix == ".json":
-        return _scene_info(path)
-    return _fov_info(path) if suffix == ".fov" else _mesh_info(path, up)
+    if suffix not in (".json", ".fov"):
+        from foveal.mesh.io import read_mesh
+
+        return _mesh_info(read_mesh(path, up=up), path, up)
+    if up is not None:
+        raise FovealError(f"{path}: it is built already, and says itself which axis points up.")
+    return _scene_info(path) if suffix == ".json" else _fov_info(path)
 
 
 def _scene_info(path: Path) -> dict[str, Any]:
@@ -68,22 +87,21 @@ def _scene_info(path: Path) -> dict[str, Any]:
     }
 
 
-def _mesh_info(path: Path, up: str | None) -> dict[str, Any]:
-    from foveal.mesh.io import read_mesh
+def _mesh_info(mesh: "TriMesh", path: Path | None, up: str | None) -> dict[str, Any]:
     from foveal.mesh.topology import inspect
 
-    mesh = read_mesh(path, up=up)
-    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    named = {"normal": mesh.normals, "colour": mesh.colours}
+    arrays = {name: array for name, array in named.items() if array is not None}
+    in_memory = sum(array.nbytes for array in (mesh.positions, mesh.faces, *arrays.values()))
     return {
-        "file": str(path),
+        "file": None if path is None else str(path),
         "kind": "mesh",
-        "bytes": path.stat().st_size,
+        "bytes": in_memory if path is None else path.stat().st_size,
         "triangles": len(mesh.faces),
         "vertices": len(mesh.positions),
-        "box": [low.tolist(), high.tolist()],
-        "attributes": [
-            name for name, array in (("normal", mesh.normals), ("colour", mesh.colours)) if array is not None
-        ],
+        "box": [mesh.positions.min(axis=0).tolist(), mesh.positions.max(axis=0).tolist()],
+        "up": up or "y",
+        "attributes": list(arrays),
         "topology": dataclasses.asdict(inspect(mesh)),
     }
 

@@ -1,17 +1,19 @@
 """A folder of static files that any web server can host: the viewer, scene.json, and the data."""
 
-import os
 import shutil
 from pathlib import Path
+from typing import Unpack
 
 from foveal.base.errors import FovealError
-from foveal.base.files import refuse_unwritable, whole_folder
+from foveal.base.files import PathLike, refuse_unwritable, whole_folder
 from foveal.base.progress import SILENT, Progress
 
+from .build import BuildOptions, Source
+from .prepare import load
 from .scene import Scene, asset_names, scene_json
 from .viewer_files import viewer_files
 
-__all__ = ["publish", "refuse_folder"]
+__all__ = ["publish"]
 
 _README = """\
 {title}
@@ -32,28 +34,29 @@ Made with foveal.
 
 
 def publish(
-    scene: Scene,
-    folder: str | os.PathLike[str],
+    source: Source | Scene,
+    folder: PathLike,
     /,
     *,
     force: bool = False,
-    viewer: str | os.PathLike[str] | None = None,
+    viewer: PathLike | None = None,
     progress: Progress = SILENT,
+    **options: Unpack[BuildOptions],
 ) -> Path:
-    """Write `scene` as a web site into `folder`, which appears whole or not at all.
+    """Write a folder of static files that any web server can host; it appears whole or not at all.
 
     Parameters
     ----------
-    scene : Scene
-        What to publish.
+    source : path, TriMesh or Scene
+        A mesh, a `.fov` or a scene.json. A mesh is built into the user's cache first.
     folder
         New, or empty, or with `force` one that was published before.
     force : bool
         Replace an earlier publication.
     viewer
         A folder with a built viewer; by default the one that comes with foveal.
-    progress : Progress
-        Told the bytes copied.
+    progress, **options
+        As for `build`.
 
     Returns
     -------
@@ -64,16 +67,28 @@ def publish(
     ------
     FovealError
         If the viewer is not built, or the folder must not be replaced.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, foveal
+    >>> from foveal.mesh.shapes import icosphere
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> (folder / "viewer").mkdir()
+    >>> _ = (folder / "viewer" / "index.html").write_text("<!doctype html><title>foveal</title>")
+    >>> site = foveal.publish(icosphere(2), folder / "site", viewer=folder / "viewer")
+    >>> sorted(path.name for path in site.iterdir())
+    ['README.txt', 'data', 'index.html', 'scene.json']
     """
     folder = Path(folder)
-    refuse_folder(folder, force=force)
+    _refuse_folder(folder, force=force)
+    files = viewer_files(viewer)  # if it is missing, say so before minutes of building
+    scene = load(source, progress=progress, **options)
     inside = folder.resolve()
     for layer in scene.layers:
         if layer.path.resolve().is_relative_to(inside):
             raise FovealError(
                 f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
             )
-    files = viewer_files(viewer)
     names = asset_names(scene)
     total = sum(path.stat().st_size for path in names)
     with whole_folder(folder, force=force) as part, progress.stage("Copying", total) as stage:
@@ -93,24 +108,16 @@ def publish(
     return folder
 
 
-def refuse_folder(folder: str | os.PathLike[str], /, *, force: bool = False) -> None:
-    """Say before any work that a folder will not do. Force replaces a site of ours, never anything else.
-
-    Raises
-    ------
-    FovealError
-        If it is a file, or holds something and is not to be replaced.
-    """
-    folder = Path(folder)
+def _refuse_folder(folder: Path, *, force: bool) -> None:
+    """Say before any work that a folder will not do. Force replaces a site of ours, never anything else."""
     if folder.exists() and not folder.is_dir():
         raise FovealError(f"{folder}: this is a file; name a folder to write.")
-    if not folder.exists() or not any(folder.iterdir()):
-        refuse_unwritable(folder, is_folder=True)
-        return
-    if not force:
-        raise FovealError(f"{folder}: the folder is not empty. Use --force to replace it.")
-    if not (folder / "scene.json").is_file() or not (folder / "index.html").is_file():
-        raise FovealError(
-            f"{folder}: the folder was not made by 'foveal publish', so it is not replaced. Name another one."
-        )
+    if folder.exists() and any(folder.iterdir()):
+        if not force:
+            raise FovealError(f"{folder}: the folder is not empty. Use --force to replace it.")
+        if not (folder / "scene.json").is_file() or not (folder / "index.html").is_file():
+            raise FovealError(
+                f"{folder}: the folder was not made by 'foveal publish', so it is not replaced. "
+                "Name another one."
+            )
     refuse_unwritable(folder, is_folder=True)

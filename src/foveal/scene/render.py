@@ -1,63 +1,143 @@
-"""A picture of a scene by the CPU rasteriser, with each asset as fine as the picture shows."""
+"""A picture by the CPU rasteriser of anything that can be shown, each asset as fine as the picture shows."""
 
 import dataclasses
-import json
-import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, read_json, refuse_unwritable
+from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
+from .build import BuildOptions, Source
+from .prepare import load
 from .scene import Layer, Scene
 
-__all__ = ["frame", "read_camera", "render"]
+if TYPE_CHECKING:
+    from foveal.raster import Picture
 
+__all__ = ["draw", "frame", "read_camera", "render"]
+
+_SIZE = (1280, 720)
 _UP = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _FROM = {"x": (0.25, -0.3, 1.0), "y": (0.3, 0.25, 1.0), "z": (0.3, -1.0, 0.25)}
 """From the object to the eye, by the axis that points up: 0.3 to the right, 0.25 up, 1 to the front, which is
 -y where z is up and else z: the viewer's home."""
 
 
-def read_camera(path: str | os.PathLike[str], /, *, size: tuple[int, int] | None = None) -> Camera:
-    """Read a camera file, as `Camera.to_json` gives it; `size` in pixels goes before the file's.
+def render(
+    source: Source | Scene,
+    output: PathLike | None = None,
+    /,
+    *,
+    camera: Camera | PathLike | None = None,
+    size: tuple[int, int] | None = None,
+    error_px: float = 1.0,
+    triangles: int | None = None,
+    progress: Progress = SILENT,
+    **options: Unpack[BuildOptions],
+) -> "Picture":
+    """Draw a mesh, a `.fov` or a scene.json on the CPU: the same pixels on every machine.
+
+    Parameters
+    ----------
+    source : path, TriMesh or Scene
+        What to draw. A mesh in a file is built into the user's cache first; one in memory is drawn as it
+        is, every triangle.
+    output : path, optional
+        A PNG to write.
+    camera : Camera or path, optional
+        By default all is framed, as the viewer does at first. A path is of a camera file, which
+        `Camera.to_json` gives the content of.
+    size : (int, int), optional
+        Width and height in pixels; by default the camera's, or 1280 x 720.
+    error_px : float
+        How wrong the surface may look, in pixels.
+    triangles : int, optional
+        At most about this many for each layer, spent where the eye is.
+    progress, **options
+        As for `build`.
+
+    Returns
+    -------
+    Picture
+        (height, width, 3) uint8, sRGB, with the `camera` it was drawn with; a notebook shows it. What shows
+        no surface has the scene's `background`, or else the viewer's light one, a gradient.
+
+    Raises
+    ------
+    FovealError
+        If the source or the camera file cannot be used, or the output not be written.
+
+    Examples
+    --------
+    >>> import foveal
+    >>> from foveal.mesh.shapes import icosphere
+    >>> foveal.render(icosphere(2), size=(64, 48)).shape
+    (48, 64, 3)
+    """
+    from foveal.raster import write_png
+
+    if not error_px >= 0:
+        raise FovealError(f"error_px must be a number of pixels, 0 or more, got {error_px}.")
+    if output is not None:
+        _refuse_output(Path(output))
+    if camera is not None and not isinstance(camera, Camera):
+        camera = read_camera(camera)
+    if camera is not None and size is not None:
+        camera = camera.resized(*size)
+    if isinstance(source, TriMesh):
+        eye = camera or _around([source.positions], up=options.get("up") or "y", size=size or _SIZE)
+        picture = _opaque(source, eye, background=None)
+    else:
+        scene = load(source, progress=progress, **options)
+        eye = camera or frame(scene, size=size or _SIZE)
+        picture = draw(scene, eye, error_px=error_px, triangles=triangles)
+    if output is not None:
+        write_png(picture, output)
+    return picture
+
+
+def _refuse_output(output: Path) -> None:
+    if output.suffix.lower() != ".png":
+        raise FovealError(f"{output}: the name must end in .png.")
+    refuse_unwritable(output)
+
+
+def read_camera(path: PathLike, /) -> Camera:
+    """Read a camera file, whose content `Camera.to_json` gives.
 
     Raises
     ------
     FovealError
         If the file is missing or is no camera.
     """
-    path = Path(path)
-    try:
-        data = json.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError as error:
-        raise FovealError(f"{path}: there is no such file.") from error
-    except OSError as error:
-        raise FovealError(f"{path}: cannot be read ({error.strerror}).") from error
-    except ValueError as error:
-        raise FovealError(f"{path}: this is not JSON ({error}).") from error
-    camera = Camera.from_json(data, name=str(path))
-    return camera if size is None else camera.resized(*size)
+    return Camera.from_json(read_json(path), name=str(path))
 
 
-def frame(scene: Scene, /, *, size: tuple[int, int] = (1280, 720)) -> Camera:
+def frame(scene: Scene, /, *, size: tuple[int, int] = _SIZE) -> Camera:
     """A camera that sees every visible layer whole, from where the viewer begins."""
     from foveal import multires
 
-    lows, highs, up = [], [], "y"
+    corners, up = [], "y"
     for layer in _visible(scene):
         with multires.open(layer.path) as asset:
-            origin, step = np.array(asset.header["origin"]), asset.header["step"]
-            low, high = np.array(asset.header["box"], dtype=np.float64)
+            corners.append(asset.origin + asset.step * np.array(asset.header["box"], dtype=np.float64))
             up = asset.header.get("up", "y")
-        lows.append(origin + step * low)
-        highs.append(origin + step * high)
+    return _around(corners, up=up, size=size)
+
+
+def _around(points: list[NDArray[np.float64]], /, *, up: str, size: tuple[int, int]) -> Camera:
+    """The viewer's home for the box of points, each (n, 3)."""
+    if up not in _UP:
+        raise ValueError(f'up must be "x", "y" or "z", got {up!r}')
     return Camera.around(
-        np.min(lows, axis=0),
-        np.max(highs, axis=0),
+        np.min([array.min(axis=0) for array in points], axis=0),
+        np.max([array.max(axis=0) for array in points], axis=0),
         direction=_FROM[up],
         up=_UP[up],
         width=size[0],
@@ -65,47 +145,29 @@ def frame(scene: Scene, /, *, size: tuple[int, int] = (1280, 720)) -> Camera:
     )
 
 
-def render(
-    scene: Scene,
-    camera: Camera | None = None,
-    /,
-    *,
-    error_px: float = 1.0,
-    triangle_budget: int | None = None,
-) -> NDArray[np.uint8]:
-    """Draw what a camera sees.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its visible layers are drawn.
-    camera : Camera, optional
-        By default the whole of the scene, framed.
-    error_px : float
-        How wrong the surface may look, in pixels.
-    triangle_budget : int, optional
-        At most about this many triangles for each layer.
-
-    Returns
-    -------
-    (height, width, 3) uint8
-        sRGB; write it with `foveal.raster.write_png`. Behind all is the scene's background, or else the
-        viewer's light one, a gradient.
-    """
-    from foveal import multires, raster
+def draw(
+    scene: Scene, camera: Camera, /, *, error_px: float = 1.0, triangles: int | None = None
+) -> "Picture":
+    """Draw the visible layers of a scene; what `render` says of options and picture holds."""
+    from foveal import multires
     from foveal.lod.select import cut
 
-    camera = camera or frame(scene)
     meshes = []
     for layer in _visible(scene):
         with multires.open(layer.path) as asset:
-            origin = np.array(asset.header["origin"])
             seen = cut(
-                asset.graph, _moved(camera, -origin), error_px=error_px, triangle_budget=triangle_budget
+                asset.graph, _moved(camera, -asset.origin), error_px=error_px, triangle_budget=triangles
             )
             meshes.append(asset.mesh_of(seen.expanded))
-    background = _rgb(scene.background) if scene.background else raster.gradient(camera)
-    return np.ascontiguousarray(raster.picture(_joined(meshes), camera, background=background)[..., :3])
+    return _opaque(_joined(meshes), camera, background=scene.background)
+
+
+def _opaque(mesh: TriMesh, camera: Camera, *, background: str | None) -> "Picture":
+    """On a background of one colour, or the viewer's light one; without the channel of opacity."""
+    from foveal import raster
+
+    behind = _rgb(background) if background else raster.gradient(camera)
+    return raster.Picture.of(raster.picture(mesh, camera, background=behind)[..., :3], camera)
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:

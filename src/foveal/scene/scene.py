@@ -12,7 +12,6 @@ make a server give out other files. Keys that are not known are ignored, for wha
 """
 
 import json
-import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,14 +19,13 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from foveal.base.errors import FovealError
-from foveal.base.files import whole_file
+from foveal.base.files import PathLike, read_json, whole_file
 from foveal.container import open_container
 from foveal.view.camera import Camera
 
 __all__ = ["Layer", "Scene", "View", "asset_names", "read_scene", "scene_json", "scene_of", "write_scene"]
 
 VERSION = 1
-_MAX_BYTES = 16 << 20  # a scene.json is small; more than this is something else
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
@@ -80,7 +78,7 @@ class Scene:
     background: str | None = None
 
 
-def scene_of(path: str | os.PathLike[str], /, *, title: str | None = None) -> Scene:
+def scene_of(path: PathLike, /, *, title: str | None = None) -> Scene:
     """A scene of one layer from one `.fov`.
 
     Raises
@@ -95,7 +93,7 @@ def scene_of(path: str | os.PathLike[str], /, *, title: str | None = None) -> Sc
     return Scene(name, (Layer(name, path.resolve()),))
 
 
-def read_scene(path: str | os.PathLike[str], /) -> Scene:
+def read_scene(path: PathLike, /) -> Scene:
     """Read a scene.json, or take a lone `.fov` as a scene of one layer.
 
     Raises
@@ -107,7 +105,7 @@ def read_scene(path: str | os.PathLike[str], /) -> Scene:
     path = Path(path)
     if path.suffix.lower() != ".json":
         return scene_of(path)
-    data = _load(path)
+    data = read_json(path)
     if not isinstance(data, dict) or "version" not in data or "layers" not in data:
         raise FovealError(f'{path}: this is not a scene.json; it needs "version" and "layers".')
     if data["version"] != VERSION:
@@ -128,21 +126,6 @@ def read_scene(path: str | os.PathLike[str], /) -> Scene:
         tuple(_view(view, n, path) for n, view in enumerate(_list(data, "views", path), 1)),
         background,
     )
-
-
-def _load(path: Path) -> Any:
-    try:
-        if path.stat().st_size > _MAX_BYTES:
-            raise FovealError(f"{path}: too large for a scene.json ({path.stat().st_size} bytes).")
-        return json.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError as error:
-        raise FovealError(f"{path}: there is no such file.") from error
-    except OSError as error:
-        raise FovealError(f"{path}: cannot be read ({error.strerror}).") from error
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, FovealError):
-            raise
-        raise FovealError(f"{path}: this is not JSON ({error}).") from error
 
 
 def _list(data: Mapping[str, Any], key: str, path: Path) -> list[Any]:
@@ -235,7 +218,7 @@ def scene_json(scene: Scene, addresses: Mapping[Path, str], /) -> bytes:
     return (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode()
 
 
-def write_scene(scene: Scene, path: str | os.PathLike[str], /) -> None:
+def write_scene(scene: Scene, path: PathLike, /) -> None:
     """Write a scene.json beside or above its assets; it appears whole or not at all.
 
     Raises

@@ -1,9 +1,9 @@
 """The built viewer: where it lies, and which of its files may be given out or published."""
 
-import os
 from pathlib import Path
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike
 
 __all__ = ["viewer_files"]
 
@@ -11,7 +11,7 @@ _BUILT = Path(__file__).parents[1] / "viewer"
 _NOTE = Path("bundle.json")  # by which hatch_build.py knows whether to build anew
 
 
-def viewer_files(folder: str | os.PathLike[str] | None = None, /) -> dict[str, Path]:
+def viewer_files(folder: PathLike | None = None, /) -> dict[str, Path]:
     """The viewer's files by address, such as ``"assets/index-3f2a.js"``.
 
     Hidden files, links that lead out of the folder, and the note of what it was built from are left out.

@@ -4,12 +4,12 @@ Live sessions (a refinement that follows the camera) will join the routes here, 
 write; what is served now can only be read.
 """
 
-import os
 import re
 from collections.abc import Collection
 
 from starlette.routing import Route, Router
 
+from foveal.base.files import PathLike
 from foveal.scene import Scene, asset_names, scene_json
 from foveal.scene.viewer_files import viewer_files
 
@@ -27,7 +27,7 @@ def create_app(
     scene: Scene,
     /,
     *,
-    viewer: str | os.PathLike[str] | None = None,
+    viewer: PathLike | None = None,
     hosts: Collection[str] = LOCAL_HOSTS,
     is_public: bool = False,
 ) -> Guard:

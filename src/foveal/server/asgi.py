@@ -28,7 +28,7 @@ async def finish(send: Send, body: bytes = b"", /) -> None:
     await send({"type": "http.response.body", "body": body})
 
 
-async def say(send: Send, status: int, sentence: str, headers: Headers | None = None) -> None:
+async def say(send: Send, status: int, sentence: str, headers: Headers | None = None, /) -> None:
     """Answer with a sentence in plain text."""
     body = (sentence + "\n").encode()
     fixed = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", b"%d" % len(body))]

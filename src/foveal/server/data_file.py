@@ -11,6 +11,8 @@ import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
+from foveal.base.files import PathLike
+
 from .asgi import EVERY_ANSWER, Headers, Receive, Scope, Send, finish, say, start
 from .conditions import Version, is_range_valid, precondition
 from .media import media_type
@@ -34,7 +36,7 @@ class DataFile:
     that is deleted goes on being served to those who look at it.
     """
 
-    def __init__(self, path: str | os.PathLike[str], /) -> None:
+    def __init__(self, path: PathLike, /) -> None:
         self.path = Path(path)
         self._type = media_type(self.path).encode()
         self._descriptor: int | None = None

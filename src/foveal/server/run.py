@@ -1,4 +1,4 @@
-"""Run the server: on a free port, with the browser opened, until Ctrl-C."""
+"""Run the server: on a free port, in a thread of its own, until it is closed."""
 
 import errno
 import os
@@ -6,20 +6,18 @@ import socket
 import sys
 import threading
 import time
-import webbrowser
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import uvicorn
 
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike
 from foveal.scene import Scene
 
 from .app import create_app
 from .guard import LOCAL_HOSTS
 
-__all__ = ["FIRST_PORT", "Running", "can_open_browser", "serve", "start"]
+__all__ = ["FIRST_PORT", "Running", "can_open_browser", "refuse_address", "start"]
 
 FIRST_PORT = 8000
 _TRIES = 100
@@ -55,6 +53,17 @@ def _listen(host: str, port: int | None) -> socket.socket:
     raise FovealError(
         f"{host}: no port from {first} on can be listened on ({reason}). Choose another --port."
     )
+
+
+def refuse_address(host: str, port: int | None, /) -> None:
+    """Say before any work that nothing can be served there.
+
+    Raises
+    ------
+    FovealError
+        If this machine has no such address, or no port from `port` on is free.
+    """
+    _listen(host, port).close()
 
 
 @dataclass
@@ -99,15 +108,37 @@ class Running:
         )
 
 
-def _prepare(
-    scene: Scene, host: str, port: int | None, options: dict[str, Any]
-) -> tuple[uvicorn.Server, socket.socket, str]:
+def start(
+    scene: Scene,
+    /,
+    *,
+    host: str = "127.0.0.1",
+    port: int | None = None,
+    viewer: PathLike | None = None,
+) -> Running:
+    """Serve `scene` in a thread and return at once, when requests are answered.
+
+    Parameters
+    ----------
+    scene : Scene
+        What to show.
+    host : str
+        Address to bind. Anything but the default lets other machines in.
+    port : int, optional
+        Port to bind, by default 8000; if it is taken the next free one. 0 lets the system choose.
+    viewer
+        A folder with a built viewer; by default the one that comes with foveal.
+
+    Raises
+    ------
+    FovealError
+        If the viewer is not built or no port can be had.
+    """
     name = f"[{host}]" if ":" in host else host
     is_public = host in _EVERYWHERE
     hosts = {*LOCAL_HOSTS, name.lower(), *({socket.gethostname().lower()} if is_public else ())}
-    app = create_app(scene, hosts=hosts, is_public=is_public, **options)
+    app = create_app(scene, viewer=viewer, hosts=hosts, is_public=is_public)
     listener = _listen(host, port)
-    shown = "127.0.0.1" if is_public else name
     config = uvicorn.Config(
         app,
         log_level="warning",
@@ -119,73 +150,13 @@ def _prepare(
         timeout_graceful_shutdown=2,
         timeout_keep_alive=60,
     )
-    return uvicorn.Server(config), listener, f"http://{shown}:{listener.getsockname()[1]}/"
-
-
-def start(
-    scene: Scene,
-    /,
-    *,
-    host: str = "127.0.0.1",
-    port: int | None = None,
-    viewer: str | os.PathLike[str] | None = None,
-) -> Running:
-    """Serve `scene` in a thread and return at once, when requests are answered.
-
-    Parameters and errors are those of `serve`.
-    """
-    server, listener, url = _prepare(scene, host, port, {"viewer": viewer})
+    server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, args=([listener],), name="foveal-server", daemon=True)
     thread.start()
     while not server.started and thread.is_alive():
         time.sleep(0.01)
-    return Running(url, server, thread)
-
-
-def serve(
-    scene: Scene,
-    /,
-    *,
-    host: str = "127.0.0.1",
-    port: int | None = None,
-    open_browser: bool | None = None,
-    viewer: str | os.PathLike[str] | None = None,
-    announce: Callable[[str], None] = print,
-) -> None:
-    """Serve `scene` until Ctrl-C, which is how one ends it and no failure: it returns normally.
-
-    Parameters
-    ----------
-    scene : Scene
-        What to show.
-    host : str
-        Address to bind. Anything but the default lets other machines in.
-    port : int, optional
-        Port to bind, by default 8000; if it is taken the next free one. 0 lets the system choose.
-    open_browser : bool, optional
-        By default, opened where there is a display.
-    viewer
-        A folder with a built viewer; by default the one that comes with foveal.
-    announce
-        Told the address, once requests are answered.
-
-    Raises
-    ------
-    FovealError
-        If the viewer is not built or no port can be had.
-    """
-    server, listener, url = _prepare(scene, host, port, {"viewer": viewer})
-    is_wanted = can_open_browser() if open_browser is None else open_browser
-    try:
-        # The socket listens already: what the browser asks before the loop runs waits in its queue.
-        announce(url)
-        if is_wanted:
-            threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
-        server.run([listener])
-    except KeyboardInterrupt:
-        pass
-    finally:
-        listener.close()
+    shown = "127.0.0.1" if is_public else name
+    return Running(f"http://{shown}:{listener.getsockname()[1]}/", server, thread)
 
 
 def can_open_browser() -> bool:

@@ -1,1 +1,4 @@
-"""Camera, frustum and projected size."""
+"""Camera, frustum and projected size.
+
+Called, `foveal.view(...)` is the verb that shows something in the viewer: `help(foveal.server.view)`.
+"""

@@ -1,0 +1,107 @@
+"""Options that go together, and what becomes of them: each group is defined once."""
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from foveal.base.errors import FovealError
+
+from .options import Bits, Dask, Debug, Json, Memory, Normals, Quiet, Step, Up, Verbose, Workers
+from .report import Telling
+
+if TYPE_CHECKING:
+    from foveal.base.tasks import Executor
+    from foveal.scene.build import BuildOptions
+
+__all__ = ["building", "takes", "telling"]
+
+
+def takes(*groups: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command the options of groups, and to the command what the groups make of them.
+
+    A group is a function whose parameters are options. The command has one parameter of the group's name,
+    in place of which Typer sees the group's own.
+    """
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        options = {group: inspect.signature(group).parameters for group in groups}
+        own = [
+            parameter
+            for parameter in inspect.signature(command).parameters.values()
+            if parameter.name not in {group.__name__ for group in groups}
+        ]
+        every = [*own, *(parameter for found in options.values() for parameter in found.values())]
+
+        @functools.wraps(command)
+        def run(**given: Any) -> None:
+            for group, names in options.items():
+                given[group.__name__] = group(**{name: given.pop(name) for name in names})
+            command(**given)
+
+        run.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+            [parameter.replace(kind=parameter.KEYWORD_ONLY) for parameter in every]
+        )
+        run.__annotations__ = {parameter.name: parameter.annotation for parameter in every}
+        return run
+
+    return decorate
+
+
+def telling(
+    json: Json = False, quiet: Quiet = False, verbose: Verbose = False, debug: Debug = False
+) -> Telling:
+    """How much the person is told, and in which form. `--debug` is read where errors are caught."""
+    return Telling(is_json=json, is_quiet=quiet, is_verbose=verbose)
+
+
+@contextmanager
+def building(
+    bits: Bits = None,
+    step: Step = None,
+    normals: Normals = None,
+    up: Up = None,
+    memory: Memory = None,
+    workers: Workers = None,
+    dask: Dask = None,
+) -> Iterator["BuildOptions"]:
+    """The options of `foveal.build`; the connection to a cluster lasts as long as the block."""
+    if bits is not None and step is not None:
+        raise typer.BadParameter("it says in another way what --bits says. Give one.", param_hint="--step")
+    if step is not None and not 0 < step < float("inf"):
+        raise typer.BadParameter(f"a length above 0 is needed, got {step}.", param_hint="--step")
+    with _cluster(dask) as executor:
+        yield {
+            "bits": bits,
+            "step": step,
+            "normals": normals and normals.value,
+            "up": up and up.value,
+            "memory_bytes": memory,
+            "workers": workers,
+            "executor": executor,
+        }
+
+
+@contextmanager
+def _cluster(address: str | None) -> Iterator["Executor | None"]:
+    """An executor on a Dask cluster, or None for local threads."""
+    if address is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise FovealError(
+            "--dask: Dask is not installed. Install it with: pip install 'foveal[dask]'."
+        ) from error
+    try:
+        client = Client(address, timeout="10s")
+    except (OSError, ValueError, TimeoutError) as error:
+        raise FovealError(
+            f"--dask {address}: no cluster answers there. Start one, or check the address."
+        ) from error
+    with client:
+        yield client.get_executor()

@@ -1,0 +1,148 @@
+"""A mesh, in a file or in memory, into a `.fov`."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
+
+from numpy.typing import ArrayLike
+
+from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, refuse_missing, refuse_same, refuse_unwritable
+from foveal.base.progress import SILENT, Progress
+from foveal.base.tasks import Executor
+from foveal.mesh.trimesh import TriMesh
+
+if TYPE_CHECKING:
+    from foveal.multires import BuildReport
+
+__all__ = ["BuildOptions", "Source", "build", "title_of"]
+
+Source = PathLike | TriMesh
+
+
+class BuildOptions(TypedDict, total=False):
+    """What `build` takes, which explains each, and every verb that may have to build. None is the default."""
+
+    bits: int | None
+    step: float | None
+    normals: str | None
+    up: str | None
+    memory_bytes: int | None
+    executor: Executor | None
+    workers: int | None
+
+
+@overload
+def build(
+    source: Source, output: PathLike, /, *, progress: Progress = ..., **options: Unpack[BuildOptions]
+) -> "BuildReport": ...
+
+
+@overload
+def build(
+    positions: ArrayLike,
+    faces: ArrayLike,
+    output: PathLike,
+    /,
+    *,
+    progress: Progress = ...,
+    **options: Unpack[BuildOptions],
+) -> "BuildReport": ...
+
+
+def build(
+    source: Any, /, *rest: Any, progress: Progress = SILENT, **options: Unpack[BuildOptions]
+) -> "BuildReport":
+    """Build a `.fov`: `build(path, output)`, `build(mesh, output)` or `build(positions, faces, output)`.
+
+    Parameters
+    ----------
+    source : path, TriMesh, or (n, 3) float
+        A mesh file, a `.fov` to build anew, a mesh, or positions; the latter are followed by `faces`,
+        (m, 3) int with indices in [0, n).
+    output : path
+        Ends in `.fov`; replaced if it is there, and only when the new one is whole.
+    progress : Progress
+        Told of each stage.
+    bits : int, optional
+        Bits a coordinate over the largest extent; by default from the errors of simplification.
+    step : float, optional
+        Grid step in the unit of the mesh, instead of `bits`.
+    normals : "auto" or "none", optional
+        "auto", the default, keeps the mesh's, or makes them where it has none.
+    up : "x", "y" or "z", optional
+        The axis that points up, where it is not the format's own.
+    memory_bytes : int, optional
+        Memory to keep within; the rest waits on disk. By default half of what is free.
+    executor : Executor, optional
+        By default local threads; anything like `concurrent.futures.Executor` serves, such as Dask's.
+    workers : int, optional
+        Number of local threads; by default one a processor.
+
+    Returns
+    -------
+    BuildReport
+        What was read, repaired and written.
+
+    Raises
+    ------
+    FovealError
+        If the input cannot be used or the output not be written, in one sentence.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile, foveal
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "tetrahedron.fov"
+    >>> positions = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> report = foveal.build(positions, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], path)
+    >>> foveal.info(path)["triangles"]
+    4
+    """
+    from foveal import multires
+    from foveal.base.jit import is_cold
+    from foveal.mesh.io import open_source, source_from_mesh
+
+    mesh, output = _arguments(source, rest)
+    if output.suffix.lower() != ".fov":
+        raise FovealError(f"{output}: the name must end in .fov.")
+    if not isinstance(mesh, TriMesh):
+        _refuse_source(Path(mesh), output)
+    refuse_unwritable(output)
+    chosen: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    up = chosen.pop("up", None)
+    if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
+        progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
+    if isinstance(mesh, TriMesh):
+        blocks = source_from_mesh(mesh, up=up or "y")
+    elif Path(mesh).suffix.lower() == ".fov":
+        blocks = multires.source_of(mesh, up=up)
+    else:
+        blocks = open_source(mesh, up=up)
+    return multires.build(blocks, output, progress=progress, **chosen)
+
+
+def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Source, Path]:
+    """The mesh and the output of a call in any of the three forms."""
+    is_whole = isinstance(source, (str, os.PathLike, TriMesh))
+    if len(rest) != (1 if is_whole else 2):
+        raise TypeError("call build(path, output), build(mesh, output) or build(positions, faces, output)")
+    return (source if is_whole else TriMesh.of(source, rest[0])), Path(rest[-1])
+
+
+def _refuse_source(path: Path, output: Path) -> None:
+    refuse_missing(path)
+    if path.suffix.lower() == ".json":
+        raise FovealError(f"{path}: a scene.json is not built; build its meshes one by one.")
+    refuse_same(output, path)
+
+
+def title_of(path: PathLike, /) -> str:
+    """A file's name without its format.
+
+    Examples
+    --------
+    >>> title_of("scans/statue.v2.ply.gz")
+    'statue.v2'
+    """
+    name = Path(path).name
+    return Path(name[:-3] if name.lower().endswith(".gz") else name).stem
