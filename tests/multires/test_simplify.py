@@ -6,7 +6,7 @@ import pytest
 from foveal.mesh.shapes import grid_patch, icosphere, torus
 from foveal.multires.bounds import deviation
 from foveal.multires.check import boundary_edges
-from foveal.multires.simplify import neighbours, simplify
+from foveal.multires.simplify import simplify, twins
 
 
 def on_grid(mesh, scale=1000):
@@ -59,12 +59,24 @@ def test_small_pieces_vanish_only_when_relaxed():
     assert boundary_edges(relaxed.faces) == 0
 
 
-def test_neighbours_are_mutual_on_a_manifold():
+def test_twins_are_pairs_that_run_opposite_ways_on_a_manifold():
     faces = icosphere(2).faces
-    across = neighbours(faces, faces.max() + 1)
-    for f in range(len(faces)):
-        for g in across[f]:
-            assert f in across[g]
+    beside = twins(faces, faces.max() + 1).reshape(-1)
+    begin, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+    assert (beside[beside] == np.arange(len(beside))).all()
+    assert (begin[beside] == end).all() and (end[beside] == begin).all()
+
+
+def test_twins_are_pairs_where_many_faces_meet():
+    # Five faces on the edge (0, 1), three of them one way round: two pairs, and one that is left over.
+    faces = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4], [1, 0, 5], [1, 0, 6]], np.int32)
+    beside = twins(faces, 7)
+    assert beside[:, 0].tolist() == [9, 12, -2, 0, 3]
+    assert (beside[:, 1:] == -1).all()
+
+
+def test_twins_of_faces_that_disagree_about_the_outside():
+    assert twins(np.array([[0, 1, 2], [0, 1, 3]], np.int32), 4)[:, 0].tolist() == [3, 0]
 
 
 def test_attributes_stay_in_the_hull_of_what_they_were():

@@ -32,8 +32,6 @@ class CellTask:
         How far those positions may be from the original, in steps of the grid.
     target, relaxed_above : int
         Triangles wanted, and above which topology is given up; see `simplify`.
-    snap : int
-        New vertices are put on multiples of so many steps.
     normal_bits : int
         Of each octahedral coordinate, 0 for no normals.
     has_colours, has_normals : bool
@@ -50,7 +48,6 @@ class CellTask:
     offset: float
     target: int
     relaxed_above: int
-    snap: int
     normal_bits: int
     has_colours: bool
     has_normals: bool
@@ -126,7 +123,6 @@ def work(task: CellTask) -> CellResult:
     # Local coordinates: integers in doubles, near zero, so that quadrics do not lose digits.
     low, high = box(whole.positions)
     middle = (low.astype(np.int64) + high) // 2
-    middle -= middle % task.snap
     local = (whole.positions - middle).astype(np.float64)
     patches, open_normals, shared_normals = _patches(task, whole, pieces, maps, local, locked)
     piece, is_relaxed = _coarse(task, whole, local, middle, locked)
@@ -179,7 +175,6 @@ def _coarse(
         target=task.target,
         relaxed_above=task.relaxed_above,
         attributes=whole.attributes,
-        snap=float(task.snap),
     )
     piece = Piece(
         whole.ids[coarse.kept],

@@ -240,7 +240,6 @@ class Levels:
                 grid.offset,
                 target,
                 max(target, settings.root_triangles) if is_last else int(RELAXED * size),
-                1,
                 settings.normal_bits,
                 settings.has_colours,
                 settings.has_normals,

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _kernels_simplify as kernels
+from . import _kernels_collapse as kernels
+from . import _kernels_quadrics as quadric_kernels
+from . import _kernels_surface as surface_kernels
 
-__all__ = ["Simplified", "incidence", "neighbours", "simplify"]
+__all__ = ["Simplified", "incidence", "simplify", "twins"]
 
 #: Weight of the wall that holds an open border in place, relative to a face, both by length.
 BORDER_WEIGHT = 4.0
 
-#: Strict passes over all edges. What a pass refused may be fine after its neighbours have moved; on the
-#: dragon the second pass gives 2 % more, a third nothing.
+#: Strict passes over all edges: what one refused may be fine after its neighbours have moved. All cells of
+#: the dragon come to a half in the first.
 PASSES = 3
 
 
@@ -34,8 +36,8 @@ class Simplified:
         Whether topology had to be given up to come down to the size asked for.
     typical_error : float
         Root of the largest mean squared distance that a collapse was let in for: a scale, not a bound.
-    across : (m, 3) int32
-        Of the input, see `neighbours`.
+    twins : (m, 3) int32
+        Of the input, see `twins`.
     """
 
     positions: NDArray[np.float64]
@@ -45,7 +47,7 @@ class Simplified:
     origin: NDArray[np.int32]
     is_relaxed: bool
     typical_error: float
-    across: NDArray[np.int32]
+    twins: NDArray[np.int32]
 
 
 def incidence(
@@ -54,15 +56,19 @@ def incidence(
     """Faces around each of `count` vertices: (starts, counts, refs)."""
     starts, counts = np.empty(count, np.int32), np.empty(count, np.int32)
     refs = np.empty(3 * len(faces), np.int32)
-    kernels.incidence(faces, starts, counts, refs)
+    surface_kernels.incidence(faces, starts, counts, refs)
     return starts, counts, refs
 
 
-def neighbours(faces: NDArray[np.int32], count: int, /) -> NDArray[np.int32]:
-    """(m, 3): the face across each edge (k, k + 1) of each face, -1 where there is none."""
-    across, is_border = np.empty((len(faces), 3), np.int32), np.empty(count, np.bool_)
-    kernels.neighbours(faces, *incidence(faces, count), across, is_border)
-    return across
+def twins(faces: NDArray[np.int32], count: int, /) -> NDArray[np.int32]:
+    """(m, 3): for the half-edge from corner k to k + 1 of each face the one beside it, 3 face + corner.
+
+    Twins are pairs, also where more than two faces meet. -1 where no other face is, -2 where all others
+    have twins already.
+    """
+    out = np.empty((len(faces), 3), np.int32)
+    surface_kernels.twins_of(faces, *incidence(faces, count), out)
+    return out
 
 
 def simplify(
@@ -74,7 +80,6 @@ def simplify(
     target: int,
     relaxed_above: int,
     attributes: NDArray[np.float32] | None = None,
-    snap: float = 1.0,
 ) -> Simplified:
     """Collapse edges until `target` faces are left, or none can be without harm.
 
@@ -93,8 +98,6 @@ def simplify(
         small pieces vanish. Locked vertices stay all the same, so even this may not be reached.
     attributes : (n, k) float32, optional
         Blended along the edges that vanish.
-    snap : float
-        New vertices lie on multiples of it.
 
     Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
 
@@ -113,19 +116,20 @@ def simplify(
     # Twice the lists' length, since each collapse writes a new list at the end.
     refs, fresh = np.empty(2 * len(first) + 256, np.int32), np.empty(len(first) + 16, np.int32)
     refs[: len(first)] = first
-    across, is_border = np.empty((size, 3), np.int32), np.empty(count, np.bool_)
-    kernels.neighbours(faces, starts, counts, first, across, is_border)
+    beside, is_border = np.empty((size, 3), np.int32), np.empty(count, np.bool_)
+    surface_kernels.twins_of(faces, starts, counts, first, beside)
+    quadric_kernels.mark_border(faces, beside, is_border)
     quadrics = np.empty((count, 11))
-    kernels.face_quadrics(positions, faces, across, BORDER_WEIGHT, quadrics)
+    quadric_kernels.face_quadrics(positions, faces, beside, BORDER_WEIGHT, quadrics)
     alive, valence = np.ones(size, np.bool_), counts.copy()
-    versions, marks = np.zeros(count, np.int32), np.zeros(count, np.int64)
-    slots, heap = np.empty((8 * size + 1024, 3), np.int32), np.empty(8 * size + 1024, np.int64)
-    sizes, worst = np.zeros(2, np.int64), np.zeros(1)
+    versions, into = np.zeros(count, np.int32), np.arange(count, dtype=np.int32)
+    marks, worst = np.zeros(count, np.int64), np.zeros(1)
+    slots, heap = np.empty((3 * size, 3), np.int32), np.empty(3 * size, np.int64)
     live, end, stamp = size, len(first), 2
     is_relaxed, is_strict, passes = False, True, 0
     while live > target:
-        kernels.offer_all(
-            positions, faces, alive, across, quadrics, locked, snap, versions, slots, heap, sizes, is_strict
+        queued = kernels.offer_all(
+            positions, faces, alive, beside, quadrics, locked, versions, slots, heap, is_strict
         )
         before = live
         live, end, stamp = kernels.collapse(
@@ -142,11 +146,11 @@ def simplify(
             quadrics,
             attributes,
             locked,
-            snap,
             versions,
+            into,
             slots,
             heap,
-            sizes,
+            queued,
             marks,
             worst,
             stamp,
@@ -155,15 +159,13 @@ def simplify(
             is_strict,
         )
         passes += 1
-        # The queue was thrown away because its slots ran out: no reason to give up.
-        is_cut_short = sizes[0] > 0
-        if is_strict and not is_cut_short and (passes >= PASSES or before - live < size // 100):
+        if is_strict and (passes >= PASSES or before - live < size // 100):
             if live <= relaxed_above:
                 break
             is_strict, is_relaxed = False, True
         elif not is_strict and before == live:
             break
-    return _gather(positions, attributes, faces, alive, is_relaxed, float(worst[0]) ** 0.5, across)
+    return _gather(positions, attributes, faces, alive, is_relaxed, float(worst[0]) ** 0.5, beside)
 
 
 def _gather(
@@ -173,7 +175,7 @@ def _gather(
     alive: NDArray[np.bool_],
     is_relaxed: bool,
     typical_error: float,
-    across: NDArray[np.int32],
+    beside: NDArray[np.int32],
 ) -> Simplified:
     origin = np.flatnonzero(alive).astype(np.int32)
     if is_relaxed and len(origin):
@@ -191,7 +193,7 @@ def _gather(
         origin,
         is_relaxed,
         typical_error,
-        across,
+        beside,
     )
 
 

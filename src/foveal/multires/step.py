@@ -43,10 +43,11 @@ def choose_step(cells: "Cells", fine_step: float, /) -> float:
         faces = whole.faces[is_proper(whole.faces)]
         if len(faces) == 0:
             continue
-        # In units of 2^6 fine steps: quadrics of integers this size keep ten digits.
+        # In units of 2^6 fine steps: quadrics of numbers this size keep ten digits, and that new vertices
+        # are put on whole units is an eighth of the least step at most.
         local = (whole.positions.astype(np.float64) - middle) / 64.0
         size = len(faces)
-        coarse = simplify(local, faces, _border(whole), target=size // 2, relaxed_above=size, snap=1.0 / 64.0)
+        coarse = simplify(local, faces, _border(whole), target=size // 2, relaxed_above=size)
         found = deviation(local, faces, np.zeros(size, np.float32), coarse)
         errors.append(float(np.max(found, initial=0.0)) * 64.0)
     wanted = float(np.median(errors or [0.0])) * _SHARE / (np.sqrt(3.0) / 2.0)
