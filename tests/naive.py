@@ -68,3 +68,24 @@ def point_triangle_distance(p, a, b, c):
 def surface_distance(points, positions, faces):
     """For each point the least distance to any triangle."""
     return [min(point_triangle_distance(p, *positions[f]) for f in faces) for p in points]
+
+
+def all_distances(points, corners):
+    """(n, m): distance of each point to each triangle (m, 3, 3), the least of those to its parts."""
+    p = points[:, None]
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+
+    def to_segment(q, r):
+        length = ((r - q) ** 2).sum(axis=1)
+        t = np.clip(((p - q) * (r - q)).sum(axis=2) / np.where(length > 0, length, 1), 0, 1)
+        return np.linalg.norm(p - q - t[..., None] * (r - q), axis=2)
+
+    sides = np.minimum(np.minimum(to_segment(a, b), to_segment(b, c)), to_segment(c, a))
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = normal / np.where(length > 0, length, 1)
+    height = ((p - a) * normal).sum(axis=2)
+    foot = p - height[..., None] * normal
+    turns = [(np.cross(r - q, foot - q) * normal).sum(axis=2) for q, r in ((a, b), (b, c), (c, a))]
+    is_above = (np.min(turns, axis=0) >= 0) & (length[:, 0] > 0)
+    return np.where(is_above, np.abs(height), sides)

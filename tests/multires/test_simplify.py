@@ -64,7 +64,8 @@ def test_twins_are_pairs_that_run_opposite_ways_on_a_manifold():
     beside = twins(faces, faces.max() + 1).reshape(-1)
     begin, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
     assert (beside[beside] == np.arange(len(beside))).all()
-    assert (begin[beside] == end).all() and (end[beside] == begin).all()
+    assert (begin[beside] == end).all()
+    assert (end[beside] == begin).all()
 
 
 def test_twins_are_pairs_where_many_faces_meet():

@@ -330,7 +330,7 @@ def collapse(
         if queued > 0:
             sift(heap, queued, np.int64(0), heap[queued])
         u, v = np.int64(slots[slot, 0]), np.int64(slots[slot, 1])
-        is_measured = u < 0
+        is_measured = bool(u < 0)
         if is_measured:
             u = -1 - u
         u, v = survivor(into, u), survivor(into, v)

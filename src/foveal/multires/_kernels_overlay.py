@@ -15,7 +15,7 @@ import numpy as np
 
 from foveal.base.jit import kernel
 
-from ._kernels_surface import fan_exit, squared_from
+from ._kernels_surface import fan_exit, squared_from, unit_normal, wall_between
 
 #: How far the fine mesh is moved for every decision (not for any distance), in steps of the grid. Vertices
 #: that stayed where they were would be on the edges of the other mesh, where it depends on rounding who
@@ -31,9 +31,26 @@ UNKNOWN, INSIDE = -1, -(1 << 31)
 
 
 @kernel
+def moved_walls(positions, faces, twins, normals, out):
+    """out (m, 3, 4): the walls of all faces, moved against the shift. normals (m, 3) is scratch."""
+    for f in range(len(faces)):
+        normals[f, 0], normals[f, 1], normals[f, 2] = unit_normal(positions, faces, f)
+    for f in range(len(faces)):
+        nx, ny, nz = normals[f, 0], normals[f, 1], normals[f, 2]
+        for k in range(3):
+            if twins[f, k] < 0:
+                continue
+            g = np.int64(twins[f, k]) // 3
+            mx, my, mz = normals[g, 0], normals[g, 1], normals[g, 2]
+            a, b = faces[f, k], faces[f, (k + 1) % 3]
+            x, y, z, d = wall_between(positions, a, b, nx, ny, nz, mx, my, mz)
+            out[f, k, 0], out[f, k, 1], out[f, k, 2] = x, y, z
+            out[f, k, 3] = d + x * SHIFT_X + y * SHIFT_Y + z * SHIFT_Z
+
+
+@kernel
 def side(walls, g, k, x, y, z):
     """Signed distance of the moved point to the wall through edge k of face g."""
-    x, y, z = x + SHIFT_X, y + SHIFT_Y, z + SHIFT_Z
     return walls[g, k, 0] * x + walls[g, k, 1] * y + walls[g, k, 2] * z + walls[g, k, 3]
 
 
@@ -356,10 +373,10 @@ def settle(
                 f, d = twin // 3, other
         under[z], depth[z] = f, math.sqrt(d)
     for _ in range(2):  # a vertex whose edges nothing crosses is under the same face as their other ends
-        for half in range(3 * len(onto_faces)):
-            g, k = half // 3, half % 3
+        for here in range(3 * len(onto_faces)):
+            g, k = here // 3, here % 3
             a, b = onto_faces[g, k], onto_faces[g, (k + 1) % 3]
-            edge = min(half, np.int64(onto_twins[g, k])) if onto_twins[g, k] >= 0 else half
+            edge = min(here, onto_twins[g, k]) if onto_twins[g, k] >= 0 else here
             if under[a] == UNKNOWN and under[b] != UNKNOWN and head[edge] < 0:
                 under[a] = under[b]
                 depth[a] = math.sqrt(squared_from(onto_positions, a, positions, faces, under[b]))

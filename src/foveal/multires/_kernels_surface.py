@@ -141,19 +141,11 @@ def unit_normal(positions, faces, f):
 
 
 @kernel
-def wall(positions, faces, twins, f, k):
-    """(x, y, z, d): the plane through edge k of face f halfway to the face beyond, f's side positive.
-
-    All zero where nothing is beyond.
-    """
-    if twins[f, k] < 0:
-        return 0.0, 0.0, 0.0, 0.0
-    nx, ny, nz = unit_normal(positions, faces, f)
-    mx, my, mz = unit_normal(positions, faces, twins[f, k] // 3)
+def wall_between(positions, a, b, nx, ny, nz, mx, my, mz):
+    """(x, y, z, d): the plane through a, b halfway between faces of normals n and m, n's side positive."""
     mx, my, mz = nx + mx, ny + my, nz + mz
     if mx * mx + my * my + mz * mz < 0.01:  # folded back: half way is anywhere
         mx, my, mz = nx, ny, nz
-    a, b = faces[f, k], faces[f, (k + 1) % 3]
     ex, ey, ez = (
         positions[b, 0] - positions[a, 0],
         positions[b, 1] - positions[a, 1],
@@ -164,6 +156,14 @@ def wall(positions, faces, twins, f, k):
     scale = 1.0 / length if length > 0.0 else 0.0
     x, y, z = x * scale, y * scale, z * scale
     return x, y, z, -(x * positions[a, 0] + y * positions[a, 1] + z * positions[a, 2])
+
+
+@kernel
+def wall(positions, faces, twins, f, k):
+    """The wall beyond edge k of face f, which has a twin."""
+    nx, ny, nz = unit_normal(positions, faces, f)
+    mx, my, mz = unit_normal(positions, faces, twins[f, k] // 3)
+    return wall_between(positions, faces[f, k], faces[f, (k + 1) % 3], nx, ny, nz, mx, my, mz)
 
 
 @kernel
@@ -234,11 +234,3 @@ def squared_to_face(x, y, z, positions, faces, f):
 def squared_from(points, i, positions, faces, f):
     """Squared distance from points[i] to face f."""
     return squared_to_face(points[i, 0], points[i, 1], points[i, 2], positions, faces, f)
-
-
-@kernel
-def walls_of(positions, faces, twins, out):
-    """out (m, 3, 4): the walls of all faces."""
-    for f in range(len(faces)):
-        for k in range(3):
-            out[f, k, 0], out[f, k, 1], out[f, k, 2], out[f, k, 3] = wall(positions, faces, twins, f, k)

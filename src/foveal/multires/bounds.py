@@ -131,13 +131,13 @@ def _measure(
 def _boxes(
     surface: Surface,
 ) -> tuple[NDArray[np.float64], float, NDArray[np.int64], NDArray[np.int64], NDArray[np.int32]]:
-    """A grid of boxes over the surface, about two for a face, with the faces that meet each."""
+    """A grid of boxes over the surface, two edges wide, with the faces that meet each."""
     positions, faces = surface.positions, surface.faces
     low, high = box(positions)
     extent = np.maximum(high - low, 1e-6 * max(1.0, float((high - low).max())))
     a, b = positions[faces[::16, 0]], positions[faces[::16, 1]]
     edge = float(np.sqrt(((a - b) ** 2).sum(axis=1)).mean()) or 1.0
-    width = max(edge, float(extent.max()) / 256)
+    width = max(2.0 * edge, float(extent.max()) / 256)
     size = np.minimum(256, np.ceil(extent / width)).astype(np.int64)
     boxes = int(size.prod())
     if boxes > 8 * len(faces) + 64:  # mostly empty: wider ones

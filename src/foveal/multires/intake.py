@@ -194,9 +194,8 @@ class Intake:
         scaled = (self._positions.take(numbers) - self.low) / self.fine_step
         return np.rint(scaled).astype(np.int32)
 
-    def centroids(self, most: int, /) -> NDArray[np.float64]:
-        """Sums of the corners of every so-many-th triangle, at most about `most` of them."""
-        stride = max(1, math.ceil(self._faces.rows / most))
+    def centroids(self, stride: int, /) -> NDArray[np.float64]:
+        """Sums of the corners of every `stride`-th triangle."""
         found = []
         for begin in range(0, self._faces.rows, _ROWS):
             faces = self._faces.part(begin, begin + _ROWS)[(-begin) % stride :: stride]

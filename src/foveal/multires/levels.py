@@ -26,9 +26,9 @@ from .spool import Room, Store
 
 __all__ = ["Grid", "Level", "Levels", "Node", "Settings"]
 
-#: Centroids that a partition is made from; of larger levels a sample does (a cell of 16 K triangles
-#: then has 1,000 of 14 M's samples, so its size is off by 3 %).
-SAMPLE = 1_000_000
+#: Centroids that a partition is made from: a thousand a cell, so that its size is off by 3 %, and no more
+#: than a million for the memory's sake.
+SAMPLE_CELL, SAMPLE = 1024, 1_000_000
 
 #: A level that keeps more than this share of its triangles has its cells joined and is done again.
 STALLED = 0.85
@@ -159,9 +159,9 @@ class Levels:
         self, pieces: Store | None, count: int, triangles: int, limit: int, level: int
     ) -> "Cells":
         """Make the level's partition and bring all triangles to their cells."""
-        stride = max(1, math.ceil(triangles / SAMPLE))
+        stride = max(1, limit // SAMPLE_CELL, math.ceil(triangles / SAMPLE))
         if pieces is None:
-            points = self.intake.centroids(SAMPLE)
+            points = self.intake.centroids(stride)
         else:
             stored = pieces
             points = np.concatenate([_centroids(stored.get(i), stride, i) for i in range(count)])

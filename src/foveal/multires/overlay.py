@@ -25,7 +25,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_overlay as kernels
-from . import _kernels_surface as surface_kernels
 
 __all__ = ["Surface", "overlay"]
 
@@ -84,8 +83,8 @@ def overlay(
     """
     vertices, onto_vertices, halves = len(fine.positions), len(coarse.positions), 3 * len(coarse.faces)
     walls = np.empty((len(coarse.faces), 3, 4))
-    surface_kernels.walls_of(coarse.positions, coarse.faces, coarse.twins, walls)
     both = (coarse.positions, coarse.faces, coarse.twins)
+    kernels.moved_walls(*both, np.empty((len(coarse.faces), 3)), walls)
     place, distance = np.empty(vertices, np.int32), np.empty(vertices)
     kernels.locate(fine.positions, fine.faces, start, *both, walls, place, distance)
     leaving, begins = np.empty(vertices, np.int32), np.empty(halves, np.int32)
