@@ -22,8 +22,8 @@ _STACK = 64  # pieces of one triangle that may wait; beyond it cutting stops and
 #: Room for the corners of a piece. Cutting ends at nine, and rounding may make a cut add one for each.
 _CORNERS = 20
 
-#: Pieces that may be measured closely. On the dragon 1 % are suspicious; soups have many more, for which
-#: time matters more than the last factor of two.
+#: Pieces that may be measured closely. On the dragon one face in a thousand is suspicious; soups have many
+#: more, for which time matters more than the last factor of two.
 _LATER = 4096
 
 #: A pair of points farther than this many times the typical distance (root mean square over the corners)

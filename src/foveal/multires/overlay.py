@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_overlay as kernels
+from . import _kernels_trace as trace_kernels
 
 __all__ = ["Surface", "overlay"]
 
@@ -84,9 +85,9 @@ def overlay(
     vertices, onto_vertices, halves = len(fine.positions), len(coarse.positions), 3 * len(coarse.faces)
     walls = np.empty((len(coarse.faces), 3, 4))
     both = (coarse.positions, coarse.faces, coarse.twins)
-    kernels.moved_walls(*both, np.empty((len(coarse.faces), 3)), walls)
+    trace_kernels.moved_walls(*both, np.empty((len(coarse.faces), 3)), walls)
     place, distance = np.empty(vertices, np.int32), np.empty(vertices)
-    kernels.locate(fine.positions, fine.faces, start, *both, walls, place, distance)
+    trace_kernels.locate(fine.positions, fine.faces, start, *both, walls, place, distance)
     leaving, begins = np.empty(vertices, np.int32), np.empty(halves, np.int32)
     under, depth = np.empty(onto_vertices, np.int32), np.empty(onto_vertices)
     kernels.outlines(
@@ -96,7 +97,7 @@ def overlay(
     room = _CROSSINGS * len(fine.faces) + 64
     head, following = np.empty(halves, np.int32), np.empty(room, np.int32)
     along, fine_half = np.empty(room), np.empty(room, np.int32)
-    kernels.trace(
+    trace_kernels.trace(
         fine.positions,
         fine.faces,
         fine.twins,

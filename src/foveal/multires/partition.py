@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _kernels_cells as kernels
+from . import _kernels_partition as kernels
 
 __all__ = ["Partition", "partition"]
 

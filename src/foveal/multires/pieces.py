@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_cells as kernels
+from . import _kernels_partition as partition_kernels
 from .partition import Partition
 
 __all__ = ["Piece", "box", "corner_sums", "is_proper", "join", "local_numbers", "split"]
@@ -49,7 +50,7 @@ class Piece:
 def box(positions: NDArray[Any], /) -> tuple[NDArray[Any], NDArray[Any]]:
     """(low, high), each (3,): least and greatest coordinates of positions (n, 3), n > 0."""
     low, high = np.empty(3, positions.dtype), np.empty(3, positions.dtype)
-    kernels.box(positions, low, high)
+    partition_kernels.box(positions, low, high)
     return low, high
 
 
@@ -58,7 +59,7 @@ def corner_sums(
 ) -> NDArray[np.float64]:
     """(k, 3): sums of the corners, which is what partitions are made of, of each `stride`-th face."""
     out = np.empty((len(range(first, len(faces), stride)), 3))
-    kernels.corner_sums(positions, faces, first, stride, out)
+    partition_kernels.corner_sums(positions, faces, first, stride, out)
     return out
 
 
