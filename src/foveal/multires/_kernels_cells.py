@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
-"""Inner loops that carry triangles between partitions: join and split pieces, weld vertices, find odd edges."""
+"""Inner loops that carry triangles between partitions: join and split pieces, weld vertices, odd edges."""
 
 import numpy as np
 

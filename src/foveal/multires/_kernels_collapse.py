@@ -15,12 +15,13 @@ from ._kernels_allowed import breaks_link, shared_faces, turns_over, vanished
 from ._kernels_quadrics import place
 
 #: A collapse costs at least this share of the squared distance between what it takes away and what it
-#: leaves. The quadric's mean does not see a tip that goes: on the dragon at 11 bits (871 K triangles in cells
-#: of 16 K, seven levels) the errors were 0.51 0.69 1.8 1.8 3.1 4.5 7.4 mm with planes by area, 0.43 0.62 1.1 1.6 2.5 5.7
-#: 7.7 by its root, 0.24 0.37 0.49 0.69 0.93 1.3 3.2 with this too; on igea, which has nothing thin, a tenth
-#: up or down either way; file size within 0.1 %, 3 to 8 % more time. 1 orders by extremes what is only
-#: rough (igea's middle levels got a tenth to a third worse), 1/9 lets more of the dragon go (0.43 0.75 at
-#: the second and third level). Adding up the distances of all collapses before was worse on both.
+#: leaves. The quadric's mean does not see a tip that goes: on the dragon at 11 bits (871 K triangles in
+#: cells of 16 K, seven levels) the errors were 0.51 0.69 1.8 1.8 3.1 4.5 7.4 mm with planes by area, 0.43
+#: 0.62 1.1 1.6 2.5 5.7 7.7 by its root, 0.24 0.37 0.49 0.69 0.93 1.3 3.2 with this too; on igea, which has
+#: nothing thin, a tenth up or down either way; file size within 0.1 %, 3 to 8 % more time. 1 orders by
+#: extremes what is only rough (igea's middle levels got a tenth to a third worse), 1/9 lets more of the
+#: dragon go (0.43 0.75 at the second and third level). Adding up the distances of all collapses before was
+#: worse on both.
 VANISHED = 0.25
 
 
