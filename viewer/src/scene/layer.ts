@@ -1,11 +1,22 @@
 /** One asset in the scene: its selection, its patches on the GPU, and what of them shows. */
-import { BufferAttribute, BufferGeometry, Group, type Material, Mesh, Sphere, Vector3 } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  type Camera,
+  Group,
+  type Material,
+  Mesh,
+  Sphere,
+  Vector3,
+} from "three";
+import type { Triple } from "../format/graph";
 import { Selection, type SelectOptions } from "../select/cut";
 import type { View } from "../select/screenError";
 import type { Asset } from "../stream/asset";
 import type { PackedPatch } from "../stream/pack";
 import { Fade } from "./fade";
-import { type Frame, toFrame } from "./frame";
+import type { Frame } from "./frame";
+import { GridPlace } from "./gridPlace";
 import type { PatchMaterials } from "./material";
 
 /** What a patch needs to be drawn; set into the shared uniforms just before. */
@@ -13,6 +24,8 @@ interface PatchLook {
   low: number;
   high: number;
   readonly tint: Vector3;
+  /** Grid position that its vertices are relative to. */
+  readonly centre: Triple;
 }
 
 export class Layer {
@@ -22,6 +35,7 @@ export class Layer {
   /** 1 for the nodes on the GPU. */
   readonly available: Uint8Array;
   readonly #meshes = new Map<number, Mesh[]>();
+  readonly #place: GridPlace;
   readonly #normalSteps: number;
   readonly #hasNormals: boolean;
   readonly #hasColours: boolean;
@@ -39,6 +53,7 @@ export class Layer {
     fadeMilliseconds: number,
   ) {
     const { graph, info } = asset;
+    this.#place = new GridPlace(info, frame);
     this.selection = new Selection(graph, asset.nodeBytes);
     this.fade = new Fade(graph.nodes, fadeMilliseconds);
     this.available = new Uint8Array(graph.nodes);
@@ -115,6 +130,11 @@ export class Layer {
     }
   }
 
+  /** What comes next is seen by this camera. */
+  follow(camera: Camera): void {
+    this.#place.follow(camera);
+  }
+
   #makeMesh(patch: PackedPatch, node: number, patchId: number): Mesh {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", gpuOnly(new BufferAttribute(patch.positions, 4)));
@@ -123,8 +143,12 @@ export class Layer {
     geometry.setIndex(new BufferAttribute(patch.indices, 1)); // stays: wireframes are made from it
     geometry.boundingSphere = new Sphere(new Vector3(), patch.radius);
     const mesh = new Mesh(geometry, this.materials.solid);
-    this.#place(mesh, patch);
-    const look: PatchLook = { low: 0, high: 1, tint: tintOf(patchId) };
+    // For culling and for the order of drawing; the shader goes by the layer's own matrix.
+    mesh.matrixAutoUpdate = false;
+    mesh.matrixWorldAutoUpdate = false;
+    this.#place.matrixOf(patch.centre, mesh.matrix);
+    mesh.matrixWorld.copy(mesh.matrix);
+    const look: PatchLook = { low: 0, high: 1, tint: tintOf(patchId), centre: patch.centre };
     mesh.userData = look;
     mesh.name = `node ${node}, patch ${patchId}`;
     const triangles = patch.indices.length / 3;
@@ -136,20 +160,10 @@ export class Layer {
     return mesh;
   }
 
-  /** One scale and one translation, computed in doubles: three multiplies with the camera's in doubles too. */
-  #place(mesh: Mesh, patch: PackedPatch): void {
-    const { info } = this.asset;
-    const centre = [0, 1, 2].map((a) => info.origin[a]! + info.step * patch.centre[a]!);
-    const [x, y, z] = toFrame(this.frame, centre as unknown as [number, number, number]);
-    const scale = info.step * this.frame.scale;
-    mesh.matrixAutoUpdate = false;
-    mesh.matrixWorldAutoUpdate = false;
-    mesh.matrix.makeScale(scale, scale, scale).setPosition(x, y, z);
-    mesh.matrixWorld.copy(mesh.matrix);
-  }
-
   #beforeDraw(look: PatchLook, material: Material): void {
     const { uniforms } = this.materials;
+    uniforms.toEye.value = this.#place.toEye;
+    this.#place.offsetOf(look.centre, uniforms.offset.value);
     uniforms.band.value.set(look.low, look.high);
     uniforms.tint.value.copy(look.tint);
     uniforms.normalSteps.value = this.#normalSteps;

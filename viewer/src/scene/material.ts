@@ -1,5 +1,5 @@
 /** The shaders of patches: one for all, with parts switched by defines so that the usual case stays cheap. */
-import { DoubleSide, GLSL3, ShaderMaterial, Vector2, Vector3 } from "three";
+import { DoubleSide, GLSL3, Matrix4, ShaderMaterial, Vector2, Vector3 } from "three";
 import { PLASTER, SHADE_GLSL } from "./shading";
 
 const VERTEX = /* glsl */ `
@@ -7,6 +7,9 @@ in vec2 octahedral;
 in vec3 srgb;
 uniform float normalSteps;
 uniform bool isFlat;
+uniform ivec3 offset;
+uniform mat4 toEye;
+invariant gl_Position; // patches that fade and patches that do not are two programs, and may be neighbours
 out vec3 vNormal;
 out vec3 vPosition;
 out vec3 vSrgb;
@@ -20,10 +23,11 @@ vec3 unfold(vec2 q) {
 }
 
 void main() {
-  vec4 seen = modelViewMatrix * vec4(position, 1.0);
+  // whole numbers are added as such: what follows knows the grid point, not the patch (gridPlace.ts)
+  vec4 seen = toEye * vec4(vec3(ivec3(position) + offset), 1.0);
   vPosition = seen.xyz;
-  // the model matrix is a translation and one scale, so its inverse transpose turns normals as it stands
-  vNormal = isFlat ? vec3(0.0) : mat3(modelViewMatrix) * unfold(octahedral) / length(modelViewMatrix[0]);
+  // the matrix turns, moves and scales evenly, so its inverse transpose turns normals as it stands
+  vNormal = isFlat ? vec3(0.0) : mat3(toEye) * unfold(octahedral) / length(toEye[0]);
   vSrgb = srgb;
   gl_Position = projectionMatrix * seen;
 }
@@ -93,9 +97,11 @@ void main() {
 }
 `;
 
-/** What all patch shaders share. \`band\` and \`tint\` are set patch by patch just before it is drawn. */
+/** What all patch shaders share. \`offset\`, \`band\` and \`tint\` are set patch by patch just before it is drawn. */
 export function makeUniforms() {
   return {
+    offset: { value: new Int32Array(3) },
+    toEye: { value: new Matrix4() },
     normalSteps: { value: 511 },
     isFlat: { value: false },
     hasColours: { value: true },

@@ -76,6 +76,9 @@ export class Stage {
     this.navigation = new Navigation(canvas, () => this.invalidate(), options.isStill);
     this.#picker = new Picker(this.renderer, this.#materials);
     this.#scene.matrixWorldAutoUpdate = false;
+    this.#scene.onBeforeRender = (_renderer, _scene, camera) => {
+      for (const layer of this.layers) layer.follow(camera);
+    };
     this.#scene.add(this.#background.mesh, this.#spheres.lines);
     canvas.addEventListener("webglcontextlost", () => this.#lose());
     canvas.addEventListener("webglcontextrestored", () => this.#restore());
