@@ -176,3 +176,10 @@ def test_an_option_that_there_is_not_is_the_programmers_fault(ball, fov, tmp_pat
 def test_a_scene_is_taken_as_it_is(fov):
     scene = scene_of(fov)
     assert load(scene) is scene
+
+
+def test_a_cache_that_cannot_be_written_is_said_before_any_work(tmp_path, ball, builds):
+    (tmp_path / "file").write_text("no folder")
+    with pytest.raises(FovealError, match="foveal build FILE -o"):
+        prepare(ball, folder=tmp_path / "file" / "cache")
+    assert builds == []

@@ -89,7 +89,7 @@ def test_a_copy_that_fails_leaves_nothing(tmp_path, fov, viewer, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("shutil.copyfile", full)
-    with pytest.raises(OSError, match="No space"):
+    with pytest.raises(FovealError, match="No space"):
         publish(scene_of(fov), tmp_path / "site", viewer=viewer)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["statue.fov", "viewer"]
 
@@ -98,3 +98,26 @@ def test_a_viewer_that_is_not_built_is_said_before_anything(tmp_path, fov):
     with pytest.raises(FovealError, match="not built"):
         publish(scene_of(fov), tmp_path / "site", viewer=tmp_path)
     assert not (tmp_path / "site").exists()
+
+
+def test_a_link_to_a_site_stays_a_link(tmp_path, fov, viewer):
+    site = publish(scene_of(fov), tmp_path / "site", viewer=viewer)
+    link = tmp_path / "link"
+    link.symlink_to(site)
+    publish(scene_of(fov, title="again"), link, viewer=viewer, force=True)
+    assert link.is_symlink()
+    assert read_scene(site / "scene.json").title == "again"
+
+
+def test_where_one_stands_and_what_a_killed_one_left(tmp_path, fov, viewer, monkeypatch):
+    here = tmp_path / "here"
+    (here / ".foveal-new.999999999.part").mkdir(parents=True)
+    monkeypatch.chdir(here)
+    publish(scene_of(fov), ".", viewer=viewer)
+    assert sorted(path.name for path in here.iterdir()) == [
+        "README.txt",
+        "assets",
+        "data",
+        "index.html",
+        "scene.json",
+    ]

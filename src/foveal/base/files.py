@@ -5,6 +5,7 @@ Outputs and scratch have the writer's process number in the name, so that the ne
 one left behind from what a running one still needs.
 """
 
+import errno
 import json
 import os
 import re
@@ -21,6 +22,7 @@ from .errors import FovealError
 
 __all__ = [
     "PathLike",
+    "is_filled",
     "read_json",
     "refuse_missing",
     "refuse_same",
@@ -32,6 +34,8 @@ __all__ = [
 
 PathLike = str | os.PathLike[str]
 
+_INSIDE = "foveal-new"  # in the hidden name of what will replace the content of a folder
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _JSON_BYTES = 16 << 20  # a scene or a camera is small; more than this is something else
 
 
@@ -87,6 +91,45 @@ def read_json(path: PathLike, /) -> Any:
         raise FovealError(f"{path}: this is not JSON ({error}). Correct it, or name another.") from error
 
 
+def refuse_unwritable(path: PathLike, /, *, is_folder: bool = False) -> None:
+    """Say before any work that `whole_file`, or `whole_folder`, could not write `path`.
+
+    Nothing is made, nor are folders on the way.
+
+    Raises
+    ------
+    FovealError
+        If the folder that would hold it, or the nearest one above, does not let files be made in it; or
+        `path` is a folder and should be a file.
+    """
+    path = Path(path)
+    if path.is_dir() and not is_folder:
+        raise FovealError(f"{path}: this is a folder; name a file to write.")
+    inside = path.absolute() / "any" if is_folder else path.absolute()
+    folder = next(parent for parent in inside.parents if parent.exists())
+    try:
+        # Tried, not asked: os.access knows nothing of what is mounted to be read only.
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def _unwritable(path: Path, error: OSError) -> FovealError:
+    return FovealError(f"{path}: cannot be written here ({error.strerror}). Choose another place.")
+
+
+@contextmanager
+def _telling_full(what: str) -> Iterator[None]:
+    """A sentence for a disk that is full, for a share or a file that may not grow."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        raise FovealError(f"{what} ({error.strerror}). Free some space, or choose another place.") from error
+
+
 def _sweep(folder: Path, pattern: str) -> None:
     """Delete what dead processes left in `folder`; `pattern` has the process number as group 1."""
     try:
@@ -102,38 +145,11 @@ def _sweep(folder: Path, pattern: str) -> None:
             entry.unlink(missing_ok=True)
 
 
-def _part(path: Path) -> Path:
-    """The hidden name beside `path` under which it is written, after sweeping earlier ones."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    _sweep(path.parent, rf"\.{re.escape(path.name)}\.(\d+)\.part")
-    return path.with_name(f".{path.name}.{os.getpid()}.part")
-
-
-def refuse_unwritable(path: PathLike, /, *, is_folder: bool = False) -> None:
-    """Say before any work that `whole_file`, or `whole_folder`, could not write `path`.
-
-    Nothing is made, nor are folders on the way.
-
-    Raises
-    ------
-    FovealError
-        If the nearest folder above `path` does not let files be made in it, or `path` is a folder and
-        should be a file.
-    """
-    path = Path(path)
-    if path.is_dir() and not is_folder:
-        raise FovealError(f"{path}: this is a folder; name a file to write.")
-    folder = next(parent for parent in path.absolute().parents if parent.exists())
-    try:
-        # Tried, not asked: os.access knows nothing of what is mounted to be read only.
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise _unwritable(path, error) from error
-
-
-def _unwritable(path: Path, error: OSError) -> FovealError:
-    return FovealError(f"{path}: cannot be written here ({error.strerror}). Choose another place.")
+def _part(folder: Path, name: str) -> Path:
+    """The hidden name in `folder` under which `name` is written, after sweeping earlier ones."""
+    folder.mkdir(parents=True, exist_ok=True)
+    _sweep(folder, rf"\.{re.escape(name)}\.(\d+)\.part")
+    return folder / f".{name}.{os.getpid()}.part"
 
 
 @contextmanager
@@ -147,12 +163,12 @@ def whole_file(path: PathLike, /) -> Iterator[BinaryIO]:
     if path.is_dir():
         raise FovealError(f"{path}: this is a folder; name a file to write.")
     try:
-        part = _part(path)
+        part = _part(path.parent, path.name)
         stream = part.open("w+b")
     except OSError as error:
         raise _unwritable(path, error) from error
     try:
-        with stream:
+        with _telling_full(f"{path}: cannot be written to its end"), stream:
             yield stream
             stream.flush()
             os.fsync(stream.fileno())
@@ -161,30 +177,60 @@ def whole_file(path: PathLike, /) -> Iterator[BinaryIO]:
         part.unlink(missing_ok=True)
 
 
+def is_filled(folder: PathLike, /) -> bool:
+    """Whether there is anything in a folder but what a killed writer left, which is removed."""
+    folder = Path(folder)
+    _sweep(folder, rf"\.{_INSIDE}\.(\d+)\.part")
+    return any(folder.iterdir())
+
+
 @contextmanager
 def whole_folder(path: PathLike, /, *, force: bool = False) -> Iterator[Path]:
-    """Give a folder to fill that appears as `path` when the block ends without an error.
+    """Give a folder to fill whose content appears at `path` when the block ends without an error.
 
-    A folder that is there already and not empty is refused unless `force`, which replaces it.
+    A folder that is there already and not empty is refused unless `force`, which replaces its content; the
+    folder itself stays, so that a link, a mounted volume or somebody's working directory may be named.
     """
     path = Path(path)
     if path.exists() and not path.is_dir():
         raise FovealError(f"{path}: this is a file; name a folder to write.")
-    if path.exists() and any(path.iterdir()) and not force:
+    is_there = path.is_dir()
+    if is_there and not force and is_filled(path):
         raise FovealError(f"{path}: the folder is not empty. Use --force to replace it.")
     try:
-        part = _part(path)
+        part = _part(path, _INSIDE) if is_there else _part(path.parent, path.name)
         shutil.rmtree(part, ignore_errors=True)
         part.mkdir()
     except OSError as error:
         raise _unwritable(path, error) from error
     try:
-        yield part
-        if path.exists():
-            shutil.rmtree(path)
-        part.replace(path)
+        with _telling_full(f"{path}: cannot be written to its end"):
+            yield part
+        if is_there:
+            _exchange(part, path)
+        else:
+            part.replace(path)
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def _exchange(part: Path, folder: Path) -> None:
+    """Put what is in `part`, itself in `folder`, in the place of all else there: renames only, so at once."""
+    new, old = list(part.iterdir()), [entry for entry in folder.iterdir() if entry != part]
+    away = part / ".old"
+    away.mkdir()
+    try:
+        for entry in old:
+            entry.replace(away / entry.name)
+        for entry in new:
+            entry.replace(folder / entry.name)
+    except BaseException:
+        for entry in new:
+            if not entry.exists():
+                (folder / entry.name).replace(entry)
+        for entry in away.iterdir():
+            entry.replace(folder / entry.name)
+        raise
 
 
 @contextmanager
@@ -195,6 +241,7 @@ def scratch(folder: PathLike | None = None, /) -> Iterator[Path]:
     _sweep(root, r"\.foveal-scratch-(\d+)-.*")
     path = Path(tempfile.mkdtemp(prefix=f".foveal-scratch-{os.getpid()}-", dir=root))
     try:
-        yield path
+        with _telling_full(f"{root}: there is no room for temporary files"):
+            yield path
     finally:
         shutil.rmtree(path, ignore_errors=True)

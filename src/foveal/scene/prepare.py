@@ -15,7 +15,7 @@ from typing import Any, Unpack
 import platformdirs
 
 from foveal.base.errors import FovealError
-from foveal.base.files import PathLike, refuse_missing
+from foveal.base.files import PathLike, refuse_missing, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
@@ -113,6 +113,13 @@ def prepare(
         # Only the time of use changes: that of writing is in the ETag, and browsers keep what they have.
         os.utime(built, ns=(time.time_ns(), built.stat().st_mtime_ns))
         return built
+    try:
+        refuse_unwritable(built)
+    except FovealError as error:
+        raise FovealError(
+            f"{root}: what is built cannot be kept here. Build it to a place of your own: "
+            "foveal build FILE -o FILE.fov."
+        ) from error
     _sweep_litter(root)
     build(source, built, progress=progress, **options)
     _forget_oldest(root, limit_bytes, keep=built)

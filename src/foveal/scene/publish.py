@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Unpack
 
 from foveal.base.errors import FovealError
-from foveal.base.files import PathLike, refuse_unwritable, whole_folder
+from foveal.base.files import PathLike, is_filled, refuse_unwritable, whole_folder
 from foveal.base.progress import SILENT, Progress
 
 from .build import BuildOptions, Source
@@ -112,7 +112,7 @@ def _refuse_folder(folder: Path, *, force: bool) -> None:
     """Say before any work that a folder will not do. Force replaces a site of ours, never anything else."""
     if folder.exists() and not folder.is_dir():
         raise FovealError(f"{folder}: this is a file; name a folder to write.")
-    if folder.exists() and any(folder.iterdir()):
+    if folder.exists() and is_filled(folder):
         if not force:
             raise FovealError(f"{folder}: the folder is not empty. Use --force to replace it.")
         if not (folder / "scene.json").is_file() or not (folder / "index.html").is_file():
