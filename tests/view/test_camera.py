@@ -95,6 +95,10 @@ def test_resized_keeps_all_but_the_size():
         (([0, 0, 1], [0, 0, 0]), {"near": 2, "far": 1}, "near and far"),
         (([0, 0, float("inf")], [0, 0, 0]), {}, "position must be three numbers"),
         (([0, 1], [0, 0, 0]), {}, "position must be three numbers"),
+        (([0, [1], 2], [0, 0, 0]), {}, "position must be three numbers"),
+        ((["0", "0", "1"], [0, 0, 0]), {}, "position must be three numbers"),
+        (([0, 0, 10**400], [0, 0, 0]), {}, "position must be three numbers"),
+        (([0, 0, 1e-160], [0, 0, 0]), {}, "the same point"),
     ],
 )
 def test_impossible_cameras_are_refused(arguments, options, words):
@@ -113,6 +117,10 @@ def test_impossible_cameras_are_refused(arguments, options, words):
         {"position": "abc", "target": [0, 0, 0]},
         {"position": [0, 0, 1], "target": [0, 0, 0], "size": 5},
         {"position": [0, 0, 1], "target": [0, 0, 0], "size": [5]},
+        {"position": [0, 0, 1], "target": [0, 0, 0], "size": [5, 5, 5]},
+        {"position": [0, 0, "1"], "target": [0, 0, 0]},
+        {"position": [0, 0, None], "target": [0, 0, 0]},
+        {"position": {"x": 1}, "target": [0, 0, 0]},
         {"position": [0, 0, 1], "target": [0, 0, 0], "field_of_view_degrees": "wide"},
         {"position": [0, 0, 1], "target": [0, 0, 0], "size": [0, 5]},
         {"position": [0, 0, 1], "target": [0, 0, 0], "size": [float("inf"), 5]},
@@ -120,5 +128,9 @@ def test_impossible_cameras_are_refused(arguments, options, words):
     ],
 )
 def test_a_file_that_is_no_camera_is_refused_by_name(data):
-    with pytest.raises(FovealError, match=r"^cam\.json: "):
+    with pytest.raises(FovealError, match=r"^cam\.json: (?!camera)"):
         Camera.from_json(data, name="cam.json")
+
+
+def test_whole_numbers_of_any_size_are_numbers():
+    assert Camera.from_json({"position": [0, 0, 10**30], "target": [0, 0, 0]}).position[2] == 1e30

@@ -14,6 +14,8 @@ __all__ = ["MAX_SIDE", "Camera"]
 MAX_SIDE = 16384
 """Pixels along a side of a picture, at most: what graphics processors take too."""
 
+_FAR, _CLOSE = 1e100, 1e-100  # between them no square overflows or vanishes
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -63,7 +65,7 @@ class Camera:
         """A checked camera; near and far default to 1/1000 and 1000 times the distance to the target."""
         eye, aim, above = (_triple(v, n) for v, n in ((position, "position"), (target, "target"), (up, "up")))
         distance = float(np.linalg.norm(aim - eye))
-        if distance == 0:
+        if distance < _CLOSE:
             raise FovealError("camera: position and target are the same point; move one of them.")
         if not np.linalg.norm(np.cross(aim - eye, above)) > 1e-12 * distance * np.linalg.norm(above):
             raise FovealError("camera: it looks along its own up direction; give another up.")
@@ -165,17 +167,17 @@ class Camera:
             If `data` is not such an object, in a sentence that begins with `name`.
         """
         try:
-            size = data.get("size", [1280, 720])
+            width, height = data.get("size", [1280, 720])
             return cls.of(
                 data["position"],
                 data["target"],
                 up=data.get("up", (0.0, 1.0, 0.0)),
                 field_of_view=math.radians(data.get("field_of_view_degrees", 40.0)),
-                width=size[0],
-                height=size[1],
+                width=width,
+                height=height,
             )
         except FovealError as error:
-            raise FovealError(f"{name}: {error}") from error
+            raise FovealError(f"{name}: {str(error).removeprefix('camera: ')}") from error
         except (AttributeError, KeyError, TypeError, IndexError, ValueError, OverflowError) as error:
             raise FovealError(
                 f'{name}: a camera needs "position" and "target", three numbers each, and may have '
@@ -193,8 +195,14 @@ def _check_size(width: float, height: float) -> None:
 
 
 def _triple(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    array = np.array(values, dtype=np.float64)
-    # Below 1e100 no square overflows.
-    if array.shape != (3,) or not (np.abs(array) < 1e100).all():
-        raise FovealError(f"camera: {name} must be three numbers, finite and below 1e100, got {values!r}.")
-    return array
+    try:
+        array = np.array(values)
+        # Texts are refused though NumPy would read numbers in them; objects are whole numbers past 64 bits.
+        numbers = array.astype(np.float64) if array.dtype.kind in "iufO" else np.empty(0)
+    except (TypeError, ValueError, OverflowError):
+        numbers = np.empty(0)
+    if numbers.shape != (3,) or not (np.abs(numbers) < _FAR).all():
+        raise FovealError(
+            f"camera: {name} must be three numbers, finite and below 1e100, got {values!r:.99}."
+        )
+    return numbers
