@@ -13,6 +13,7 @@ import pytest
 
 from foveal import FovealError
 from foveal.server import start
+from foveal.server.run import refuse_address
 
 
 @pytest.fixture
@@ -83,9 +84,31 @@ def test_a_taken_port_gives_the_next(scene, viewer):
 
 
 def test_a_host_that_is_not_ours_is_said(scene, viewer):
-    for host in ("203.0.113.1", "no.such.name.invalid"):
+    for host in ("203.0.113.1", "no.such.name.invalid", "a..b", "127.0.0.1:80"):
         with pytest.raises(FovealError, match=rf"^{host}: .*--bind"):
             start(scene, host=host, viewer=viewer)
+        with pytest.raises(FovealError, match="--bind"):
+            refuse_address(host, None)
+
+
+def test_no_host_is_not_every_host(scene, viewer):
+    with pytest.raises(FovealError, match="--bind"):
+        start(scene, host="", viewer=viewer)
+
+
+@pytest.mark.skipif(not socket.has_ipv6, reason="this Python knows no IPv6")
+@pytest.mark.parametrize(("host", "shown"), [("::1", "[::1]"), ("[::1]", "[::1]"), ("::", "[::1]")])
+def test_addresses_of_the_newer_kind(scene, viewer, host, shown):
+    try:
+        refuse_address("::1", 0)
+    except FovealError:
+        pytest.skip("this machine has no IPv6 address")
+    with start(scene, host=host, port=0, viewer=viewer) as server:
+        assert server.url.startswith(f"http://{shown}:")
+        assert b" 200 " in ask(
+            server.url,
+            f"GET / HTTP/1.1\r\nHost: {urlsplit(server.url).netloc}\r\nConnection: close\r\n\r\n".encode(),
+        )
 
 
 def test_closing_ends_it(scene, viewer):
@@ -103,6 +126,7 @@ def test_ctrl_c_is_how_a_server_ends_and_no_failure(scene, viewer):
 from pathlib import Path
 from foveal.scene import Layer, Scene
 from foveal.server import start
+from foveal.server.run import refuse_address
 scene = Scene("t", (Layer("t", Path(sys.argv[1])),))
 running = start(scene, port=0, viewer=sys.argv[2])
 print(running.url, flush=True)

@@ -21,14 +21,17 @@ __all__ = ["FIRST_PORT", "Running", "can_open_browser", "refuse_address", "start
 
 FIRST_PORT = 8000
 _TRIES = 100
-_EVERYWHERE = {"0.0.0.0", "::", ""}
+_EVERYWHERE = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}  # and by which address it is shown here
 
 
 def _listen(host: str, port: int | None) -> socket.socket:
     """A listening socket on `port`, or on the next free one after it; 0 lets the system choose."""
     first = FIRST_PORT if port is None else port
+    host = host.strip("[]")
+    if not host:  # to the system that would be all interfaces
+        raise FovealError("no address to serve on is named. Choose a --bind, such as 127.0.0.1.")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    last: OSError | None = None
+    last: Exception | None = None
     for candidate in range(first, min(first + _TRIES, 65536)) if first else [0]:
         # With the protocol left at 0 asyncio does not see that this is TCP and leaves Nagle's algorithm on:
         # each answer then waits 40 ms (measured: 365 requests a second, against 15,000).
@@ -41,12 +44,13 @@ def _listen(host: str, port: int | None) -> socket.socket:
             listener.bind((host, candidate))
             listener.listen(2048)
             return listener
-        except OSError as error:
+        except (OSError, UnicodeError) as error:
             listener.close()
             last = error
-            if isinstance(error, socket.gaierror) or error.errno == errno.EADDRNOTAVAIL:
+            is_name = isinstance(error, (socket.gaierror, UnicodeError))
+            if is_name or getattr(error, "errno", None) == errno.EADDRNOTAVAIL:
                 raise FovealError(
-                    f"{host}: this machine has no such address ({error.strerror}). "
+                    f"{host}: this machine has no such address ({getattr(error, 'strerror', error)}). "
                     "Choose another --bind, such as 127.0.0.1, or 0.0.0.0 for all it has."
                 ) from error
     reason = getattr(last, "strerror", None) or last
@@ -134,6 +138,7 @@ def start(
     FovealError
         If the viewer is not built or no port can be had.
     """
+    host = host.strip("[]")
     name = f"[{host}]" if ":" in host else host
     is_public = host in _EVERYWHERE
     hosts = {*LOCAL_HOSTS, name.lower(), *({socket.gethostname().lower()} if is_public else ())}
@@ -155,8 +160,7 @@ def start(
     thread.start()
     while not server.started and thread.is_alive():
         time.sleep(0.01)
-    shown = "127.0.0.1" if is_public else name
-    return Running(f"http://{shown}:{listener.getsockname()[1]}/", server, thread)
+    return Running(f"http://{_EVERYWHERE.get(host, name)}:{listener.getsockname()[1]}/", server, thread)
 
 
 def can_open_browser() -> bool:
