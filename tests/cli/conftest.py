@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+import foveal
 from foveal.base.jit import cache_folder
 from foveal.cli.app import app
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import bumpy_sphere
 
-SOURCE = Path(__file__).parents[2] / "src"
+SOURCE = Path(foveal.__file__).parents[1]
 
 
 @pytest.fixture(autouse=True)

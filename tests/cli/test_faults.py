@@ -1,12 +1,19 @@
 """Wrong input: one sentence on stderr, the right exit code, no traceback, no file."""
 
 import json
+import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
 
 import pytest
+
+try:
+    import resource
+except ImportError:  # on Windows
+    resource = None
 
 import foveal
 from foveal.cli import main
@@ -77,7 +84,9 @@ def test_every_prefix_of_a_file_is_refused(run, ball, tmp_path):
         ["build", "a.ply", "--bits", "many"],
         ["build", "a.ply", "--memory", "lots"],
         ["build", "a.ply", "--memory", "0GB"],
+        ["build", "a.ply", "--memory", "9" * 400],
         ["build", "a.ply", "--workers", "0"],
+        ["build", "a.ply", "--workers", "99999"],
         ["build", "a.ply", "--up", "w"],
         ["render", "a.ply", "-o", "a.png", "--size", "big"],
         ["export", "a.ply"],
@@ -160,6 +169,59 @@ def test_as_a_process(spawn, ball, tmp_path):
     assert usage.returncode == 2
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no file size")
+@pytest.mark.parametrize(
+    ("command", "name"), [("build", "a.fov"), ("export", "a.ply"), ("render", "a.png"), ("publish", "a")]
+)
+def test_a_disk_that_is_full_is_said_and_nothing_is_left(run, environment, ball, tmp_path, command, name):
+    if command == "publish" and not HAS_VIEWER:
+        pytest.skip("there is no viewer to publish; ./do test builds it first")
+    # Once without the limit, so that no kernel is left to be compiled and written.
+    assert run(command, ball, "-o", tmp_path / f"first-{name}").exit_code == 0
+    out = tmp_path / "out"
+    out.mkdir()
+    answer = subprocess.run(
+        [sys.executable, "-m", "foveal", command, ball, "-o", out / name],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)),
+    )
+    assert answer.returncode == 1
+    assert "Free some space" in answer.stderr.splitlines()[-1]
+    assert "Traceback" not in answer.stderr
+    assert list(out.iterdir()) == []
+    assert not any((tmp_path / "tmp").iterdir())
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there a name may be any bytes")
+def test_names_that_cannot_be_said_are_spelled(spawn, ball, tmp_path):
+    path = tmp_path / os.fsdecode(b"bell\x07\xff.fov")
+    path.write_bytes(ball.read_bytes())
+    out, error = spawn("info", path).communicate(timeout=60)
+    assert error == ""
+    assert "bell\\x07\\udcff.fov: " in out
+    out, _ = spawn("info", path, "--json").communicate(timeout=60)
+    assert json.loads(out)["file"] == str(path)
+    _, error = spawn("info", os.fsdecode(b"\x1b[2J\xff")).communicate(timeout=60)
+    assert error == "foveal: \\x1b[2J\\udcff: there is no such file.\n"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_stdout_that_takes_nothing(environment, ball):
+    with open("/dev/full", "w") as full:
+        answer = subprocess.run(
+            [sys.executable, "-m", "foveal", "info", ball],
+            env=environment,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)
+
+
 @pytest.fixture
 def interrupted(spawn, tmp_path):
     """A build of a larger mesh that got a signal when it was under way."""
@@ -183,9 +245,10 @@ def interrupted(spawn, tmp_path):
 @pytest.mark.skipif(
     sys.platform == "win32", reason="Windows cannot send SIGINT or SIGKILL to one child alone"
 )
-def test_ctrl_c_leaves_nothing(interrupted, tmp_path):
-    code, out, error = interrupted(signal.SIGINT)
-    assert code == 130
+@pytest.mark.parametrize(("name", "wanted"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+def test_who_is_told_to_end_leaves_nothing(interrupted, tmp_path, name, wanted):
+    code, out, error = interrupted(getattr(signal, name))
+    assert code == wanted
     assert (out, error.strip()) == ("", "")
     assert not list(tmp_path.glob("out/*"))
     assert not list(tmp_path.glob("out/.*"))

@@ -7,7 +7,8 @@ import sys
 
 import numpy as np
 
-from foveal.cli.report import print_json, reporter
+from foveal.cli.report import reporter
+from foveal.cli.result import print_json
 
 
 class Terminal(io.StringIO):

@@ -1,7 +1,9 @@
 """scene.json: round trips, names that are safe, and one sentence for whatever is wrong with it."""
 
 import json
+import os
 import string
+import sys
 
 import pytest
 from hypothesis import given
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 
 from foveal import Camera, FovealError
 from foveal.scene import Layer, Scene, View, asset_names, read_scene, scene_json, scene_of, write_scene
+from foveal.scene.publish import publish
 
 
 def test_a_lone_file_is_a_scene_of_one_layer(fov):
@@ -59,6 +62,9 @@ def test_what_is_left_out_takes_its_default_and_what_is_not_known_is_ignored(fov
         ({"layers": [{"asset": "missing.fov"}]}, "no such file"),
         ({"layers": [{"asset": "scene.json"}]}, "not a .fov"),
         ({"title": ["a"]}, '"title"'),
+        ({"title": "a\nb"}, "of one line"),
+        ({"title": "\x1b[2J"}, "of one line"),
+        ({"layers": [{"asset": "statue.fov", "name": "\ud800"}]}, "of one line"),
         ({"background": "red"}, '"background"'),
         ({"views": [3]}, "view 1"),
         ({"views": [{"name": "a"}]}, "view 'a'"),
@@ -87,7 +93,17 @@ def test_what_is_no_scene_is_said(tmp_path, text):
 
 @pytest.mark.parametrize(
     "asset",
-    ["../statue.fov", "/etc/passwd", "a/../../statue.fov", "..\\statue.fov", "C:statue.fov", "", "a\0b", "."],
+    [
+        "../statue.fov",
+        "/etc/passwd",
+        "a/../../statue.fov",
+        "..\\statue.fov",
+        "C:statue.fov",
+        "",
+        "a\0b",
+        "\ud800",
+        ".",
+    ],
 )
 def test_an_asset_does_not_leave_the_folder(tmp_path, make_fov, asset):
     make_fov(tmp_path / "statue.fov")
@@ -134,3 +150,17 @@ def test_one_asset_in_two_layers_is_one_file(fov):
     assert asset_names(scene) == {fov: "a.fov"}
     data = json.loads(scene_json(scene, {fov: "data/a.fov"}))
     assert [layer["asset"] for layer in data["layers"]] == ["data/a.fov"] * 2
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only there a name may be any bytes")
+def test_a_file_of_any_name_is_a_scene_that_can_be_written_and_read(tmp_path, make_fov):
+    path = make_fov(tmp_path / os.fsdecode(b"bell\x07\xff\n.fov"))
+    scene = scene_of(path)
+    assert scene.title == "bell___"
+    publish(scene, tmp_path / "site", viewer=viewer_of(tmp_path))
+    assert read_scene(tmp_path / "site" / "scene.json").title == "bell___"
+
+
+def viewer_of(folder):
+    (folder / "index.html").write_text("<!doctype html>")
+    return folder

@@ -21,6 +21,7 @@ from .export import export
 from .info import info
 from .publish import publish
 from .render import render
+from .result import plain
 from .view import view
 
 __all__ = ["app"]
@@ -44,7 +45,7 @@ class _Group(TyperGroup):
         except Exception as error:
             if "--debug" in words:
                 traceback.print_exc()
-            print(f"foveal: {_sentence(error)}", file=sys.stderr)
+            print(plain(f"foveal: {_sentence(error)}"), file=sys.stderr)
             sys.exit(1)
 
 
@@ -53,7 +54,10 @@ def _sentence(error: Exception) -> str:
     if isinstance(error, FovealError):
         return " ".join(str(error).split())
     if isinstance(error, MemoryError):
-        return "there is not enough memory. Give a limit to keep within, such as --memory 1GB."
+        return (
+            "there is not enough memory. Give a limit to keep within, such as --memory 1GB; "
+            "for a picture a smaller --size."
+        )
     if isinstance(error, OSError) and error.strerror:
         where = f"{error.filename}: " if error.filename else ""
         return f"{where}{error.strerror}. Check the path, its permissions and the free space."

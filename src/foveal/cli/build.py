@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import building, takes, telling
+from .groups import Telling, building, takes, telling
 from .options import Force, Source
 from .output import refuse_output
-from .report import Telling, counted
+from .result import counted
 
 if TYPE_CHECKING:
     from foveal.multires import BuildReport

@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from .groups import takes, telling
+from .groups import Telling, takes, telling
 from .options import Source
-from .report import Telling
 
 __all__ = ["check"]
 
@@ -21,7 +20,11 @@ def check(
     ] = False,
     original: Annotated[
         Path | None,
-        typer.Option(metavar="MESH", help="With --deep: measure against this mesh, not the finest level."),
+        typer.Option(
+            metavar="MESH",
+            help="With --deep: measure against this mesh, not the finest level.",
+            readable=False,
+        ),
     ] = None,
     *,
     telling: Telling,

@@ -4,6 +4,7 @@ import functools
 import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -11,13 +12,14 @@ import typer
 from foveal.base.errors import FovealError
 
 from .options import Bits, Dask, Debug, Json, Memory, Normals, Quiet, Step, Up, Verbose, Workers
-from .report import Telling
+from .report import Reporter, reporter
+from .result import print_json, print_lines
 
 if TYPE_CHECKING:
     from foveal.base.tasks import Executor
     from foveal.scene.build import BuildOptions
 
-__all__ = ["building", "takes", "telling"]
+__all__ = ["Telling", "building", "takes", "telling"]
 
 
 def takes(*groups: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -49,6 +51,36 @@ def takes(*groups: Callable[..., Any]) -> Callable[[Callable[..., None]], Callab
         return run
 
     return decorate
+
+
+@dataclass(frozen=True, slots=True)
+class Telling:
+    """How a command speaks: what it is doing on stderr, its result on stdout.
+
+    Attributes
+    ----------
+    is_json : bool
+        The result is for programs.
+    is_quiet, is_verbose : bool
+        No progress, no notes and no result in words; or each stage's time as well.
+    """
+
+    is_json: bool
+    is_quiet: bool
+    is_verbose: bool
+
+    def progress(self) -> Reporter:
+        """Who tells of the work: `with telling.progress() as progress`."""
+        return reporter(is_quiet=self.is_quiet, is_verbose=self.is_verbose)
+
+    def result(self, facts: dict[str, Any], /, *lines: str, brief: str | None = None) -> None:
+        """All facts as JSON where that was asked for, else lines in words, or `brief` where quiet."""
+        if self.is_json:
+            print_json(facts)
+        elif not self.is_quiet:
+            print_lines(lines)
+        elif brief is not None:
+            print_lines([brief])
 
 
 def telling(

@@ -41,10 +41,10 @@ def parse_size(text: str) -> int:
     match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([kmgt]?)(i?)b?\s*", text.lower())
     if match is None:
         raise typer.BadParameter(f"{text!r} is not a size; write for instance 2GB or 500MB.")
-    size = int(float(match[1]) * (_BINARY if match[3] else _UNITS)[match[2]])
-    if size < 1:
-        raise typer.BadParameter("the size must be at least one byte.")
-    return size
+    size = float(match[1]) * (_BINARY if match[3] else _UNITS)[match[2]]
+    if not 1 <= size < 2**63:
+        raise typer.BadParameter(f"{text[:40]!r} is no size of a memory; write for instance 2GB or 500MB.")
+    return int(size)
 
 
 class UpAxis(enum.StrEnum):
@@ -65,7 +65,9 @@ class NormalsKind(enum.StrEnum):
 Source = Annotated[
     Path,
     typer.Argument(
-        metavar="FILE", help="A mesh (PLY, STL, OBJ, OFF, GLB ..., also .gz), a .fov, or a scene.json."
+        metavar="FILE",
+        help="A mesh (PLY, STL, OBJ, OFF, GLB ..., also .gz), a .fov, or a scene.json.",
+        readable=False,  # that is asked later, since it is no fault of the command line
     ),
 ]
 Bits = Annotated[
@@ -87,12 +89,14 @@ Step = Annotated[
 Normals = Annotated[
     NormalsKind | None,
     typer.Option(
+        case_sensitive=False,
         help="auto keeps the file's, or makes them; none is smaller, and shaded flat.",
     ),
 ]
 Up = Annotated[
     UpAxis | None,
     typer.Option(
+        case_sensitive=False,
         help="Axis of the input that points up; by default y. Data is never rotated.",
     ),
 ]
@@ -108,6 +112,7 @@ Workers = Annotated[
     int | None,
     typer.Option(
         min=1,
+        max=1024,
         metavar="N",
         help="Threads; by default one a processor. Fewer leave room for others.",
     ),

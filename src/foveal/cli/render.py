@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import building, takes, telling
+from .groups import Telling, building, takes, telling
 from .options import Force, Source
 from .output import refuse_output
-from .report import Telling
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
@@ -27,6 +26,7 @@ def render(
         typer.Option(
             metavar="FILE.json",
             help="Position, target, up, field of view in degrees. By default all is framed.",
+            readable=False,
         ),
     ] = None,
     size: Annotated[

@@ -1,71 +1,22 @@
 """What the person sees while it works: bars on a terminal, lines elsewhere; all on stderr."""
 
-import json
-import math
 import sys
 import time
-from dataclasses import dataclass
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from foveal.base.progress import SILENT, Progress, Stage
+
+from .result import plain
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
     from rich.progress import TaskID
 
-__all__ = ["Reporter", "Telling", "counted", "print_json", "reporter", "table"]
+__all__ = ["Reporter", "reporter"]
 
 _LINE_EVERY_S = 5.0
 _FIRST_SHARE = 0.05  # below, an estimate would mostly be of how long kernels take to compile
-
-
-def print_json(data: Any) -> None:
-    """The one thing on stdout."""
-    print(json.dumps(_plain(data), indent=1, ensure_ascii=False, allow_nan=False), flush=True)
-
-
-def _plain(value: Any) -> Any:
-    """As JSON knows it: NumPy's numbers and arrays as Python's, what is not finite as null."""
-    if isinstance(value, dict):
-        return {str(key): _plain(member) for key, member in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(member) for member in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value if value is None or isinstance(value, (str, int, float, bool)) else str(value)
-
-
-@dataclass(frozen=True, slots=True)
-class Telling:
-    """How a command speaks: what it is doing on stderr, its result on stdout.
-
-    Attributes
-    ----------
-    is_json : bool
-        The result is for programs.
-    is_quiet, is_verbose : bool
-        No progress, no notes and no result in words; or each stage's time as well.
-    """
-
-    is_json: bool
-    is_quiet: bool
-    is_verbose: bool
-
-    def progress(self) -> "Reporter":
-        """Who tells of the work: `with telling.progress() as progress`."""
-        return reporter(is_quiet=self.is_quiet, is_verbose=self.is_verbose)
-
-    def result(self, facts: dict[str, Any], /, *lines: str, brief: str | None = None) -> None:
-        """All facts as JSON where that was asked for, else lines in words, or `brief` where quiet."""
-        if self.is_json:
-            print_json(facts)
-        elif not self.is_quiet:
-            print(*lines, sep="\n", flush=True)
-        elif brief is not None:
-            print(brief, flush=True)
 
 
 class Reporter:
@@ -78,7 +29,7 @@ class Reporter:
         raise NotImplementedError
 
     def note(self, sentence: str) -> None:
-        print(sentence, file=sys.stderr, flush=True)
+        print(plain(sentence), file=sys.stderr, flush=True)
 
     def close(self) -> None:
         """Leave the terminal as it was."""
@@ -171,7 +122,7 @@ class _Bars(Reporter):
         if self._rich is None:
             super().note(sentence)
         else:
-            self._rich.console.print(sentence, markup=False, highlight=False)
+            self._rich.console.print(plain(sentence), markup=False, highlight=False)
 
     def close(self) -> None:
         if self._rich is not None:
@@ -202,30 +153,3 @@ def reporter(*, is_quiet: bool, is_verbose: bool) -> Reporter:
     if is_quiet:
         return _Quiet(is_verbose=False)
     return (_Bars if sys.stderr.isatty() else _Lines)(is_verbose=is_verbose)
-
-
-def counted(number: int, what: str, plural: str = "") -> str:
-    """A number of things, in words.
-
-    Examples
-    --------
-    >>> counted(1, "triangle"), counted(1234, "vertex", "vertices")
-    ('1 triangle', '1,234 vertices')
-    """
-    return f"{number:,} {what if number == 1 else plural or what + 's'}"
-
-
-def table(heads: list[str], rows: list[list[str]]) -> str:
-    """Columns of text, set right; plain, so that it can be piped and costs no import.
-
-    Examples
-    --------
-    >>> print(table(["level", "triangles"], [["0", "1,000"], ["1", "2,000"]]))
-    level  triangles
-        0      1,000
-        1      2,000
-    """
-    widths = [max(len(row[i]) for row in [heads, *rows]) for i in range(len(heads))]
-    return "\n".join(
-        "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in [heads, *rows]
-    )

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import building, takes, telling
+from .groups import Telling, building, takes, telling
 from .options import Source
-from .report import Telling
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions

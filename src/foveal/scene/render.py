@@ -92,11 +92,11 @@ def render(
         camera = camera.resized(*size)
     if isinstance(source, TriMesh):
         eye = camera or _around([source.positions], up=options.get("up") or "y", size=size or _SIZE)
-        picture = _opaque(source, eye, background=None)
+        picture = _opaque(source, eye, None, progress)
     else:
         scene = load(source, progress=progress, **options)
         eye = camera or frame(scene, size=size or _SIZE)
-        picture = draw(scene, eye, error_px=error_px, triangles=triangles)
+        picture = draw(scene, eye, error_px=error_px, triangles=triangles, progress=progress)
     if output is not None:
         write_png(picture, output)
     return picture
@@ -146,7 +146,13 @@ def _around(points: list[NDArray[np.float64]], /, *, up: str, size: tuple[int, i
 
 
 def draw(
-    scene: Scene, camera: Camera, /, *, error_px: float = 1.0, triangles: int | None = None
+    scene: Scene,
+    camera: Camera,
+    /,
+    *,
+    error_px: float = 1.0,
+    triangles: int | None = None,
+    progress: Progress = SILENT,
 ) -> "Picture":
     """Draw the visible layers of a scene; what `render` says of options and picture holds."""
     from foveal import multires
@@ -159,15 +165,16 @@ def draw(
                 asset.graph, _moved(camera, -asset.origin), error_px=error_px, triangle_budget=triangles
             )
             meshes.append(asset.mesh_of(seen.expanded))
-    return _opaque(_joined(meshes), camera, background=scene.background)
+    return _opaque(_joined(meshes), camera, scene.background, progress)
 
 
-def _opaque(mesh: TriMesh, camera: Camera, *, background: str | None) -> "Picture":
+def _opaque(mesh: TriMesh, camera: Camera, background: str | None, progress: Progress) -> "Picture":
     """On a background of one colour, or the viewer's light one; without the channel of opacity."""
     from foveal import raster
 
     behind = _rgb(background) if background else raster.gradient(camera)
-    return raster.Picture.of(raster.picture(mesh, camera, background=behind)[..., :3], camera)
+    picture = raster.picture(mesh, camera, background=behind, progress=progress)
+    return raster.Picture.of(picture[..., :3], camera)
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:

@@ -26,6 +26,8 @@ from foveal.view.camera import Camera
 __all__ = ["Layer", "Scene", "View", "asset_names", "read_scene", "scene_json", "scene_of", "write_scene"]
 
 VERSION = 1
+# What no name may hold: control characters, and halves of characters, which no UTF-8 can say.
+_UNSAYABLE = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
@@ -89,7 +91,7 @@ def scene_of(path: PathLike, /, *, title: str | None = None) -> Scene:
     path = Path(path)
     with open_container(path) as file:
         file.expect("multires", 1)
-    name = title or path.stem
+    name = _UNSAYABLE.sub("_", title or path.stem)  # file systems allow what scene.json does not
     return Scene(name, (Layer(name, path.resolve()),))
 
 
@@ -137,8 +139,8 @@ def _list(data: Mapping[str, Any], key: str, path: Path) -> list[Any]:
 
 def _text(data: Mapping[str, Any], key: str, default: str, path: Path) -> str:
     value = data.get(key, default)
-    if not isinstance(value, str) or len(value) > 1000:
-        raise FovealError(f'{path}: "{key}" must be a short text, got {value!r:.60}.')
+    if not isinstance(value, str) or len(value) > 1000 or _UNSAYABLE.search(value):
+        raise FovealError(f'{path}: "{key}" must be a short text of one line, got {value!r:.60}.')
     return value
 
 
@@ -159,7 +161,11 @@ def _contained(asset: str, where: str, path: Path) -> Path:
     folder = path.parent.resolve()
     pure = PurePosixPath(asset)
     is_plain = (
-        asset and not pure.is_absolute() and ".." not in pure.parts and not re.search(r"[\\:\0]", asset)
+        asset
+        and not pure.is_absolute()
+        and ".." not in pure.parts
+        and not re.search(r"[\\:]", asset)
+        and not _UNSAYABLE.search(asset)
     )
     found = (folder / pure).resolve() if is_plain else None
     if found is None or not found.is_relative_to(folder):
