@@ -10,13 +10,14 @@ from PIL import Image
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, whole_file
-from foveal.base.tasks import Executor, threads
+from foveal.base.progress import SILENT, Progress
+from foveal.base.tasks import Executor, ordered_map, threads
 from foveal.mesh.normals import vertex_normals
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from . import _kernels_shade as kernels
-from .rasterise import BAND_ROWS, Screen, run_all
+from .rasterise import AHEAD, BAND_ROWS, Screen
 from .shade import PLASTER, shade_band, tables
 
 __all__ = ["Colour", "Picture", "gradient", "picture", "write_png"]
@@ -75,6 +76,7 @@ def picture(
     has_colours: bool = True,
     plain: Colour = PLASTER,
     executor: Executor | None = None,
+    progress: Progress = SILENT,
 ) -> Picture:
     """Draw a mesh as the viewer does: lit from the camera, smooth, from both sides.
 
@@ -94,6 +96,8 @@ def picture(
         Whether the mesh's colours are shown; else, and without colours, it is `plain` (sRGB).
     executor : Executor, optional
         Local threads by default. The bytes do not depend on it.
+    progress : Progress
+        Told of the rows drawn.
 
     Returns
     -------
@@ -124,6 +128,7 @@ def picture(
                 has_colours=has_colours,
                 plain=plain,
                 executor=pool,
+                progress=progress,
             )
     behind = _background(background, camera)
     linear_of = tables()[0].astype(np.float32)
@@ -150,7 +155,10 @@ def picture(
         samples = (np.concatenate(linear), np.concatenate(face_ids))
         kernels.develop(*samples, supersampling, back, behind is not None, tables()[1], out[rows])
 
-    run_all(executor, draw, range(-(-screen.bands // bands_a_group)))
+    groups = -(-screen.bands // bands_a_group)
+    with progress.stage("Drawing", float(groups)) as stage:
+        for _ in ordered_map(executor, draw, range(groups), ahead=AHEAD):
+            stage.advance()
     return Picture.of(out, camera)
 
 

@@ -21,12 +21,14 @@ from . import _kernels as kernels
 from . import _kernels_clip as clipping
 from . import _kernels_shade as shading
 
-__all__ = ["BAND_ROWS", "MOST_PIXELS", "GBuffer", "Screen", "rasterise", "run_all"]
+__all__ = ["AHEAD", "BAND_ROWS", "MOST_PIXELS", "GBuffer", "Screen", "rasterise", "run_all"]
 
 BAND_ROWS = 64
 """Rows drawn at a time: at 1280 columns their depths fit a processor's second cache."""
 MOST_PIXELS = 1 << 15
 """Of a picture's width or height, after supersampling."""
+AHEAD = 64
+"""Tasks in flight at once: more than there are processors, and memory for few."""
 _CHUNK = 1 << 17  # vertices or faces a task
 _GUARD = kernels.LIMIT / kernels.STEPS / 2  # pixels from the middle beyond which triangles are clipped
 
@@ -168,7 +170,7 @@ def _chunks(count: int) -> list[tuple[int, int]]:
 
 def run_all(executor: Executor, task: Callable[[Any], R], items: Iterable[Any], /) -> list[R]:
     """`task` of each item, in order."""
-    return list(ordered_map(executor, task, items, ahead=64))
+    return list(ordered_map(executor, task, items, ahead=AHEAD))
 
 
 def rasterise(
