@@ -284,7 +284,8 @@ def _write(
     plan = Plan(levels, step)
     patches = plan.patches
     every = max(1, len(patches) // _TRAINING)
-    tables = codec.train([p() for p in patches[::every]], normal_bits=settings.normal_bits or 10)
+    bits = settings.normal_bits or 10
+    tables = codec.train([p() for p in patches[::every]], normal_bits=bits, executor=pool)
     clock.lap("train")
     with create(path, kind="multires", version=VERSION) as writer:
         items = (([patches[i]() for i in range(a, b)], tables) for a, b in plan.ranges())

@@ -1,6 +1,9 @@
 """Statistics of patches, made into tables."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,21 +34,26 @@ _MANY = 16  # patches of which some can be left out and all levels still be ther
 _PRIOR = 0.01  # how strongly weights lean to the plain parallelogram b - o
 
 
-def train(patches: Iterable[Patch], /, *, normal_bits: int = 10) -> Tables:
+def train(patches: Iterable[Patch], /, *, normal_bits: int = 10, executor: Executor | None = None) -> Tables:
     """Tables for a file that holds `patches`, or patches like them.
 
     Give patches of all levels; of more than a quarter of a million triangles only a part is looked at,
     which costs about 0.3 % in size. Any patch can be coded with any tables; with those of other
-    patches it is only longer.
+    patches it is only longer. The tables are the same with an executor, which works on several patches
+    at once, as without.
     """
-    pairs = [(patch, grow(patch)) for patch in _sample(list(patches))]
-    weights = _train_weights(pairs)
+    spread: Callable[..., Iterable[Any]] = map if executor is None else executor.map
+    sample = _sample(list(patches))
+    pairs = list(zip(sample, spread(grow, sample), strict=True))
+    weights = _train_weights(pairs, spread)
     blank = Tables(normal_bits, weights, *_no_contexts(), np.zeros((1, layout.SYMBOLS), np.int32))
     counts = np.zeros((layout.CONTEXTS, layout.SYMBOLS), np.int64)
     shift_of = np.zeros(layout.CONTEXTS, np.uint8)
-    coded = [
-        events(patch, grown, coarse_grid(patch), blank.all_weights, normal_bits) for patch, grown in pairs
-    ]
+
+    def events_of(pair: tuple[Patch, Grown]) -> Any:
+        return events(*pair, coarse_grid(pair[0]), blank.all_weights, normal_bits)
+
+    coded = list(spread(events_of, pairs))
     sums = np.zeros((layout.CONTEXTS, 2), np.int64)
     for contexts, values in coded:
         _kernels_train.magnitudes(contexts, values, sums)
@@ -85,20 +93,21 @@ def _no_contexts() -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     return np.zeros(layout.CONTEXTS, np.uint8), np.zeros(layout.CONTEXTS, np.uint8)
 
 
-def _train_weights(pairs: list[tuple[Patch, Grown]]) -> NDArray[np.int8]:
+def _train_weights(
+    pairs: list[tuple[Patch, Grown]], spread: Callable[..., Iterable[Any]]
+) -> NDArray[np.int8]:
     """Weights of the four points by weighted least squares, twice: the second time outliers count less."""
     unknowns = layout.WEIGHT_ROWS * 4
     weights = np.zeros((layout.KINDS, layout.WEIGHT_ROWS, 4), np.int8)
     weights[:, 0, 0], weights[:, 0, 1] = 1 << layout.WEIGHT_BITS, -(1 << layout.WEIGHT_BITS)
     for turn in range(2):
+        current = Tables(10, weights, *_no_contexts(), np.zeros((1, 1), np.int32)).all_weights
+        system = partial(_accumulated, weights=current, turn=turn)
         squares = np.zeros((layout.KINDS, unknowns, unknowns))
         products = np.zeros((layout.KINDS, unknowns))
-        current = Tables(10, weights, *_no_contexts(), np.zeros((1, 1), np.int32)).all_weights
-        for patch, grown in pairs:
-            positions = np.ascontiguousarray(patch.positions[grown.order], np.int32)
-            _kernels_train.accumulate(
-                positions, grown.degree, grown.corners, grown.vertices, current, turn, squares, products
-            )
+        for more_squares, more_products in spread(system, pairs):
+            squares += more_squares
+            products += more_products
         for kind in range(layout.KINDS):
             scale = np.trace(squares[kind]) / unknowns
             if scale <= 0:
@@ -108,6 +117,20 @@ def _train_weights(pairs: list[tuple[Patch, Grown]]) -> NDArray[np.int8]:
             solved[0] += (1, -1, 0, 0)
             weights[kind] = np.rint(solved * (1 << layout.WEIGHT_BITS)).clip(-128, 127)
     return weights
+
+
+def _accumulated(
+    pair: tuple[Patch, Grown], *, weights: NDArray[np.int64], turn: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What a patch adds to the squares and products of the least squares."""
+    patch, grown = pair
+    unknowns = layout.WEIGHT_ROWS * 4
+    squares, products = np.zeros((layout.KINDS, unknowns, unknowns)), np.zeros((layout.KINDS, unknowns))
+    positions = np.ascontiguousarray(patch.positions[grown.order], np.int32)
+    _kernels_train.accumulate(
+        positions, grown.degree, grown.corners, grown.vertices, weights, turn, squares, products
+    )
+    return squares, products
 
 
 def _choose_shifts(sums: NDArray[np.int64], shift_of: NDArray[np.uint8]) -> None:
