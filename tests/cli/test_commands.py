@@ -16,7 +16,7 @@ def result(answer):
 def test_build(run, ball_mesh, tmp_path):
     out = tmp_path / "new" / "folders" / "ball.fov"
     facts = result(
-        run("build", ball_mesh, "-o", out, "--json", "--bits", "12", "--normals", "none", "--up", "z")
+        run("build", ball_mesh, "-o", out, "--json", "--bits", "12", "--normals", "NONE", "--up", "Z")
     )
     assert facts["file"] == str(out)
     assert facts["bytes"] == out.stat().st_size
@@ -66,7 +66,9 @@ def test_info_of_a_mesh(run, ball_mesh):
     facts = result(run("info", ball_mesh, "--json"))
     assert facts["topology"]["is_closed"] is True
     assert facts["topology"]["components"] == 1
-    assert "boundary edges" in run("info", ball_mesh).stdout
+    text = run("info", ball_mesh, "--up", "z").stdout
+    assert "boundary edges" in text
+    assert "  up           z\n" in text
 
 
 def test_check(run, ball, ball_mesh, tmp_path):

@@ -136,6 +136,23 @@ def test_a_place_that_cannot_be_written_is_said_before_any_work(run, ball_mesh, 
     assert "..." not in answer.stderr
 
 
+def test_whether_a_file_can_be_read_is_not_for_the_parser_to_say(run, ball, tmp_path, monkeypatch):
+    # It would exit with 2, as if the command line were at fault.
+    camera = tmp_path / "cam.json"
+    camera.write_text('{"position": [0, 0, 4], "target": [0, 0, 0], "size": [5, 4]}')
+    monkeypatch.setattr("os.access", lambda *_, **__: False)
+    for words in (
+        ["info", ball],
+        ["check", ball, "--deep", "--original", ball],
+        ["build", ball, "-o", tmp_path / "a.fov"],
+        ["export", ball, "-o", tmp_path / "a.ply"],
+        ["render", ball, "-o", tmp_path / "a.png", "--camera", camera],
+        ["build", ball, "-o", tmp_path / "a.fov", "--force"],
+    ):
+        answer = run(*words)
+        assert answer.exit_code == 0, answer.stderr
+
+
 def test_debug_shows_where(run, tmp_path):
     assert "Traceback" in run("info", tmp_path / "none.fov", "--debug").stderr
 

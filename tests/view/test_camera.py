@@ -134,3 +134,15 @@ def test_a_file_that_is_no_camera_is_refused_by_name(data):
 
 def test_whole_numbers_of_any_size_are_numbers():
     assert Camera.from_json({"position": [0, 0, 10**30], "target": [0, 0, 0]}).position[2] == 1e30
+
+
+def test_a_box_that_is_a_point_is_seen_too():
+    camera = Camera.around([3, 4, 5], [3, 4, 5])
+    assert np.linalg.norm(camera.position - camera.target) > 0
+    np.testing.assert_array_equal(camera.target, [3, 4, 5])
+
+
+@pytest.mark.parametrize("direction", [[0, 0, 0], [0, 0, 1e-200], [0, 1, 0]])
+def test_a_direction_that_is_none_is_said(direction):
+    with pytest.raises(FovealError, match="direction"):
+        Camera.around([0, 0, 0], [1, 1, 1], direction=direction)

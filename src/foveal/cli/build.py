@@ -25,7 +25,9 @@ def build(
     file: Source,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE.fov", help="By default FILE.fov beside the input."),
+        typer.Option(
+            "--output", "-o", metavar="FILE.fov", help="By default FILE.fov beside the input.", readable=False
+        ),
     ] = None,
     force: Force = False,
     *,

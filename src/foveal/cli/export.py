@@ -20,7 +20,9 @@ __all__ = ["export"]
 @takes(building, telling)
 def export(
     file: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Ends in .ply or .glb.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Ends in .ply or .glb.", readable=False)
+    ],
     error: Annotated[
         float | None,
         typer.Option(

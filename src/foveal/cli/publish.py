@@ -18,7 +18,9 @@ __all__ = ["publish"]
 @takes(building, telling)
 def publish(
     file: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FOLDER", help="New or empty.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="New or empty.", readable=False)
+    ],
     force: Annotated[bool, typer.Option("--force", help="Replace what was published there before.")] = False,
     *,
     building: AbstractContextManager["BuildOptions"],

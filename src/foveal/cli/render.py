@@ -20,7 +20,9 @@ __all__ = ["render"]
 @takes(building, telling)
 def render(
     file: Source,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE.png", help="The picture to write.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE.png", help="The picture to write.", readable=False)
+    ],
     camera: Annotated[
         Path | None,
         typer.Option(

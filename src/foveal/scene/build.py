@@ -15,7 +15,7 @@ from foveal.mesh.trimesh import TriMesh
 if TYPE_CHECKING:
     from foveal.multires import BuildReport
 
-__all__ = ["BuildOptions", "Source", "build", "title_of"]
+__all__ = ["BuildOptions", "Source", "build", "checked", "title_of", "up_of"]
 
 Source = PathLike | TriMesh
 
@@ -105,8 +105,8 @@ def build(
     mesh, output = _arguments(source, rest)
     if output.suffix.lower() != ".fov":
         raise FovealError(f"{output}: the name must end in .fov.")
-    if not isinstance(mesh, TriMesh):
-        _refuse_source(Path(mesh), output)
+    if isinstance(mesh, Path):
+        _refuse_source(mesh, output)
     refuse_unwritable(output)
     chosen: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     up = chosen.pop("up", None)
@@ -114,19 +114,48 @@ def build(
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     if isinstance(mesh, TriMesh):
         blocks = source_from_mesh(mesh, up=up or "y")
-    elif Path(mesh).suffix.lower() == ".fov":
+    elif mesh.suffix.lower() == ".fov":
         blocks = multires.source_of(mesh, up=up)
     else:
         blocks = open_source(mesh, up=up)
     return multires.build(blocks, output, progress=progress, **chosen)
 
 
-def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Source, Path]:
+def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Path | TriMesh, Path]:
     """The mesh and the output of a call in any of the three forms."""
     is_whole = isinstance(source, (str, os.PathLike, TriMesh))
     if len(rest) != (1 if is_whole else 2):
         raise TypeError("call build(path, output), build(mesh, output) or build(positions, faces, output)")
-    return (source if is_whole else TriMesh.of(source, rest[0])), Path(rest[-1])
+    return (checked(source) if is_whole else TriMesh.of(source, rest[0])), Path(rest[-1])
+
+
+def checked(source: Any, /) -> Path | TriMesh:
+    """A path, or a mesh whose arrays are what they should be, which its constructor does not ask.
+
+    An index that is no vertex would have kernels read what is not theirs.
+
+    Raises
+    ------
+    FovealError
+        As `TriMesh.of` does.
+    TypeError
+        If it is neither.
+    """
+    if isinstance(source, TriMesh):
+        return TriMesh.of(source.positions, source.faces, normals=source.normals, colours=source.colours)
+    if isinstance(source, (str, os.PathLike)):
+        return Path(source)
+    raise TypeError(
+        f"a path is needed, or a mesh as TriMesh.of(positions, faces) makes it; got {type(source).__name__}"
+    )
+
+
+def up_of(options: BuildOptions, /) -> str:
+    """The axis that points up: what was chosen, or y."""
+    up = options.get("up") or "y"
+    if up not in ("x", "y", "z"):
+        raise ValueError(f'up must be "x", "y" or "z", got {up!r}')
+    return up
 
 
 def _refuse_source(path: Path, output: Path) -> None:

@@ -11,7 +11,7 @@ from foveal.base.progress import SILENT, Progress
 from foveal.lod.graph import Graph
 from foveal.mesh.trimesh import TriMesh
 
-from .build import BuildOptions, Source
+from .build import BuildOptions, Source, checked, up_of
 from .prepare import prepare
 from .read import read
 
@@ -66,40 +66,50 @@ def export(
     """
     from foveal import multires
 
+    source = checked(source)
     name = "mesh" if isinstance(source, TriMesh) else str(source)
-    if error is not None and triangles is not None:
-        raise ValueError("give error or triangles, not both")
-    if error is not None and not 0 <= error < float("inf"):
-        raise FovealError(f"{name}: the error must be a length, 0 or more, got {error}.")
-    if triangles is not None and triangles < 1:
-        raise FovealError(f"{name}: at least one triangle must be wanted, got {triangles}.")
-    if name.lower().endswith(".json"):
-        raise FovealError(f"{name}: a scene.json is not exported whole; export its files one by one.")
+    _refuse_limits(name, error, triangles)
+    if isinstance(source, Path):
+        _refuse_source(source)
     if output is not None:
         _refuse_output(Path(output), source)
-    if isinstance(source, TriMesh):
-        is_built = False
-    else:
-        refuse_missing(source)
-        is_built = Path(source).suffix.lower() == ".fov"
-    shaped = error, triangles, *(options.get(name) for name in ("bits", "step", "normals"))
-    if is_built or any(value is not None for value in shaped):
+    up = up_of(options)
+    shaped = error, triangles, *(options.get(option) for option in ("bits", "step", "normals"))
+    if _is_fov(source) or any(value is not None for value in shaped):
         with multires.open(prepare(source, progress=progress, **options)) as asset:
             if triangles is not None:
                 error = error_for_triangles(asset.graph, triangles, name=name)
             mesh, up = multires.extract(asset, error=error), asset.header.get("up", "y")
     else:
         mesh = source if isinstance(source, TriMesh) else read(source)
-        up = options.get("up") or "y"
     if output is not None:
         _write(mesh, Path(output), up)
     return mesh
 
 
-def _refuse_output(output: Path, source: Source) -> None:
+def _is_fov(source: Path | TriMesh) -> bool:
+    return isinstance(source, Path) and source.suffix.lower() == ".fov"
+
+
+def _refuse_limits(name: str, error: float | None, triangles: int | None) -> None:
+    if error is not None and triangles is not None:
+        raise ValueError("give error or triangles, not both")
+    if error is not None and not 0 <= error < float("inf"):
+        raise FovealError(f"{name}: the error must be a length, 0 or more, got {error}.")
+    if triangles is not None and triangles < 1:
+        raise FovealError(f"{name}: at least one triangle must be wanted, got {triangles}.")
+
+
+def _refuse_source(path: Path) -> None:
+    if path.suffix.lower() == ".json":
+        raise FovealError(f"{path}: a scene.json is not exported whole; export its files one by one.")
+    refuse_missing(path)
+
+
+def _refuse_output(output: Path, source: Path | TriMesh) -> None:
     if output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
-    if not isinstance(source, TriMesh):
+    if isinstance(source, Path):
         refuse_same(output, source)
     refuse_unwritable(output)
 

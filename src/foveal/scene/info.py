@@ -60,7 +60,11 @@ def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str,
     True
     """
     if not isinstance(source, (str, os.PathLike)):
-        return _mesh_info(source, None, up)
+        from .build import checked
+
+        mesh = checked(source)
+        assert not isinstance(mesh, Path)
+        return _mesh_info(mesh, None, up)
     path = Path(source)
     refuse_missing(path)
     suffix = path.suffix.lower()

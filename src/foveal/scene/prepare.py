@@ -19,7 +19,7 @@ from foveal.base.files import PathLike, refuse_missing, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
-from .build import BuildOptions, Source, build, title_of
+from .build import BuildOptions, Source, build, checked, title_of
 from .scene import Scene, read_scene, scene_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
@@ -61,12 +61,12 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
     if isinstance(source, Scene):
         refuse_shaping(f"the scene {source.title!r}", options)
         return source
-    if isinstance(source, TriMesh):
-        return scene_of(prepare(source, progress=progress, **options), title="mesh")
-    if Path(source).suffix.lower() == ".json":
+    source = checked(source)
+    if isinstance(source, Path) and source.suffix.lower() == ".json":
         refuse_shaping(source, options)
         return read_scene(source)
-    return scene_of(prepare(source, progress=progress, **options), title=title_of(source))
+    title = "mesh" if isinstance(source, TriMesh) else title_of(source)
+    return scene_of(prepare(source, progress=progress, **options), title=title)
 
 
 def prepare(
@@ -102,8 +102,8 @@ def prepare(
     if isinstance(source, TriMesh):
         name = f"mesh-{_fingerprint_of_mesh(source, shaping)}"
     else:
-        refuse_missing(source)
         path = Path(source)
+        refuse_missing(path)
         if path.suffix.lower() == ".fov":
             refuse_shaping(path, options)
             return path

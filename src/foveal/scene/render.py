@@ -13,7 +13,7 @@ from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from .build import BuildOptions, Source
+from .build import BuildOptions, Source, checked, up_of
 from .prepare import load
 from .scene import Layer, Scene
 
@@ -84,14 +84,18 @@ def render(
 
     if not error_px >= 0:
         raise FovealError(f"error_px must be a number of pixels, 0 or more, got {error_px}.")
+    if triangles is not None and triangles < 1:
+        raise FovealError(f"at least one triangle must be wanted, got {triangles}.")
     if output is not None:
         _refuse_output(Path(output))
     if camera is not None and not isinstance(camera, Camera):
         camera = read_camera(camera)
     if camera is not None and size is not None:
         camera = camera.resized(*size)
+    if not isinstance(source, Scene):
+        source = checked(source)
     if isinstance(source, TriMesh):
-        eye = camera or _around([source.positions], up=options.get("up") or "y", size=size or _SIZE)
+        eye = camera or _around([source.positions], up=up_of(options), size=size or _SIZE)
         picture = _opaque(source, eye, None, progress)
     else:
         scene = load(source, progress=progress, **options)
@@ -133,8 +137,6 @@ def frame(scene: Scene, /, *, size: tuple[int, int] = _SIZE) -> Camera:
 
 def _around(points: list[NDArray[np.float64]], /, *, up: str, size: tuple[int, int]) -> Camera:
     """The viewer's home for the box of points, each (n, 3)."""
-    if up not in _UP:
-        raise ValueError(f'up must be "x", "y" or "z", got {up!r}')
     return Camera.around(
         np.min([array.min(axis=0) for array in points], axis=0),
         np.max([array.max(axis=0) for array in points], axis=0),

@@ -27,6 +27,8 @@ _EVERYWHERE = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}  # and by which address it
 def _listen(host: str, port: int | None) -> socket.socket:
     """A listening socket on `port`, or on the next free one after it; 0 lets the system choose."""
     first = FIRST_PORT if port is None else port
+    if not 0 <= first <= 65535:
+        raise FovealError(f"{first} is no port. Choose a --port from 0 to 65535.")
     host = host.strip("[]")
     if not host:  # to the system that would be all interfaces
         raise FovealError("no address to serve on is named. Choose a --bind, such as 127.0.0.1.")

@@ -98,8 +98,12 @@ class Camera:
         """
         low, high = _triple(low, "low"), _triple(high, "high")
         towards = _triple(direction, "direction")
+        if np.linalg.norm(towards) < _CLOSE:
+            raise FovealError("camera: direction has no length; give one from the box to the eye.")
         centre = (low + high) / 2
-        size = max(float(np.linalg.norm(high - low)), 1e-300)
+        size = float(np.linalg.norm(high - low))
+        if size < _CLOSE:  # a point: any distance shows all of it
+            size = 1.0
         # First from so far that any corner is ahead; the basis does not change on the way to the box.
         camera = cls.of(centre + towards / np.linalg.norm(towards) * size, centre, up=up, **options)
         corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3) - centre
