@@ -1,6 +1,7 @@
 """Pictures: the shading page, supersampling, backgrounds, and the file."""
 
 import dataclasses
+import io
 import json
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
@@ -172,3 +173,40 @@ def test_a_gradient_is_the_same_in_parts_and_its_memory_is_small():
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 3 * 4000 * 2000 * 3
+
+
+def test_a_notebook_shows_a_picture_and_what_is_computed_from_it_is_plain():
+    shown = picture(icosphere(1), CAMERA, background=(255, 255, 255))
+    assert shown.camera is CAMERA
+    for part in (shown, shown[5:20, ::2], shown[..., :3]):
+        with Image.open(io.BytesIO(part._repr_png_())) as image:
+            np.testing.assert_array_equal(np.asarray(image), part)
+    assert shown[5:20].camera is None  # it was drawn with another
+    for numbers in (shown[0], shown[..., 0], shown[:0]):
+        assert numbers._repr_png_() is None
+    assert (shown / 255)[0, 0, 0] == 1.0
+    assert type(shown / 255) is type(shown == 0) is type(shown.mean(axis=0)) is np.ndarray
+    assert isinstance(shown.max(), np.uint8)
+    assert shown.flags.c_contiguous
+
+
+def test_drawing_tells_how_far_it_is():
+    told = []
+
+    class Stage:
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            told.append("done")
+
+        def advance(self, amount=1.0):
+            told.append(amount)
+
+    class Listener:
+        def stage(self, what, total):
+            told.extend([what, total])
+            return Stage()
+
+    picture(icosphere(1), CAMERA.resized(8, 200), supersampling=1, progress=Listener())
+    assert told == ["Drawing", 4.0, 1.0, 1.0, 1.0, 1.0, "done"]
