@@ -1,18 +1,13 @@
-"""Export at a chosen error or number of triangles, and a frame around all of a scene."""
-
-import dataclasses
-import math
+"""Export at a chosen error or number of triangles, to what the suffix says."""
 
 import numpy as np
 import pytest
 
 from foveal import FovealError, multires
 from foveal.mesh.distance import sampled_hausdorff
-from foveal.mesh.io import read_mesh, source_from_mesh, write_ply
-from foveal.mesh.shapes import bumpy_sphere, icosphere
+from foveal.mesh.io import read_mesh, write_ply
+from foveal.mesh.shapes import bumpy_sphere
 from foveal.scene.export import error_for_triangles, export
-from foveal.scene.render import frame, read_camera, render
-from foveal.scene.scene import scene_of
 
 
 @pytest.fixture(scope="module")
@@ -69,48 +64,3 @@ def test_a_mesh_becomes_another_format_without_a_build(tmp_path, monkeypatch):
     write_ply(bumpy_sphere(2), tmp_path / "in.ply")
     export(tmp_path / "in.ply", tmp_path / "out.glb")
     assert len(read_mesh(tmp_path / "out.glb").faces) == 320
-
-
-def test_the_default_camera_sees_all(ball):
-    scene = dataclasses.replace(scene_of(ball), background="#0000ff")
-    picture = render(scene, size=(80, 60))
-    assert picture.shape == (60, 80, 3)
-    assert picture.dtype == np.uint8
-    differs = (picture != [0, 0, 255]).any(axis=2).nonzero()
-    for found, size in zip(differs, (60, 80), strict=True):
-        assert 0 < found.min() < found.max() < size - 1
-
-
-@pytest.mark.parametrize(
-    ("up", "towards"), [("x", (0.25, -0.3, 1)), ("y", (0.3, 0.25, 1)), ("z", (0.3, -1, 0.25))]
-)
-def test_the_default_camera_is_the_viewers_home(tmp_path, up, towards):
-    # viewer/src/scene/navigation.ts: 40 degrees, 0.3 to the right, 0.25 up and 1 to the front, where a corner
-    # of the box touches the picture's rim, times 1.12.
-    multires.build(source_from_mesh(icosphere(1), up=up), tmp_path / "ball.fov")
-    camera = frame(scene_of(tmp_path / "ball.fov"), size=(300, 200))
-    assert math.degrees(camera.field_of_view) == pytest.approx(40)
-    away = camera.position - camera.target
-    np.testing.assert_allclose(away / np.linalg.norm(away), np.array(towards) / np.linalg.norm(towards))
-    half = np.ptp(icosphere(1).positions, axis=0).max() / 2
-    corners = np.array(np.meshgrid(*[[-half, half]] * 3)).reshape(3, -1)
-    right, above, back = camera.basis() @ corners
-    reach = np.maximum(np.abs(right) / 1.5, np.abs(above)) / math.tan(math.radians(20))
-    assert np.linalg.norm(away) == pytest.approx(1.12 * (back + reach).max(), rel=1e-3)
-
-
-def test_a_camera_file_is_read_and_faults_are_said(tmp_path):
-    path = tmp_path / "cam.json"
-    path.write_text('{"position": [0, 0, 5], "target": [0, 0, 0], "size": [320, 200]}')
-    assert read_camera(path).width == 320
-    for text, sentence in (
-        ("{", "not JSON"),
-        ("[" * 10**5, "not JSON"),
-        ("{}", "position"),
-        ("[]", "position"),
-    ):
-        path.write_text(text)
-        with pytest.raises(FovealError, match=sentence):
-            read_camera(path)
-    with pytest.raises(FovealError, match="no such file"):
-        read_camera(tmp_path / "none.json")

@@ -2,5 +2,6 @@
 
 from .picture import Picture, gradient, picture, write_png
 from .rasterise import GBuffer, rasterise
+from .shade import PLASTER
 
-__all__ = ["GBuffer", "Picture", "gradient", "picture", "rasterise", "write_png"]
+__all__ = ["PLASTER", "GBuffer", "Picture", "gradient", "picture", "rasterise", "write_png"]

@@ -2,7 +2,7 @@
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,16 +192,26 @@ def _moved(camera: Camera, shift: NDArray[np.float64]) -> Camera:
 
 
 def _joined(meshes: list[TriMesh]) -> TriMesh:
-    """All meshes as one; an attribute is kept if every mesh has it."""
-    if len(meshes) == 1:
-        return meshes[0]
+    """All meshes as one, each as the viewer shows it alone."""
+    from foveal.raster import PLASTER
+
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
-    faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]
-    normals = [mesh.normals for mesh in meshes if mesh.normals is not None]
-    colours = [mesh.colours for mesh in meshes if mesh.colours is not None]
+    has_colours = any(mesh.colours is not None for mesh in meshes)
     return TriMesh(
         np.concatenate([mesh.positions for mesh in meshes]),
-        np.concatenate(faces).astype(np.int32),
-        np.concatenate(normals) if len(normals) == len(meshes) else None,
-        np.concatenate(colours) if len(colours) == len(meshes) else None,
+        np.concatenate(
+            [mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)], dtype=np.int32
+        ),
+        # A `.fov` without normals is flat: a normal of no length has the triangle's own shown.
+        np.concatenate([_or(mesh.normals, len(mesh.positions), (0, 0, 0), np.float32) for mesh in meshes]),
+        np.concatenate([_or(mesh.colours, len(mesh.positions), PLASTER, np.uint8) for mesh in meshes])
+        if has_colours
+        else None,
     )
+
+
+def _or(
+    array: NDArray[Any] | None, count: int, value: tuple[int, int, int], kind: type[np.generic]
+) -> NDArray[Any]:
+    """An attribute, or the same value for each vertex where a mesh has none."""
+    return np.broadcast_to(np.array(value, kind), (count, 3)) if array is None else array
