@@ -46,6 +46,29 @@ def test_build_replaces_only_when_told(run, ball_mesh, tmp_path):
     assert out.read_bytes() != b"precious"
 
 
+def test_how_it_is_built_changes_no_byte_but_what_is_built_does(run, ball_mesh, tmp_path):
+    def built(name, *options):
+        path = tmp_path / f"{name}.fov"
+        answer = run("build", ball_mesh, "-o", path, "-q", *options)
+        assert answer.exit_code == 0, answer.stderr
+        return path.read_bytes()
+
+    usual = built("usual")
+    assert built("alone", "--workers", "1", "--memory", "1GB") == usual
+    assert built("coarse", "--step", "0.01") != usual
+    with multires.open(tmp_path / "coarse.fov") as asset:
+        assert asset.step == 0.01
+
+
+def test_a_cluster_gives_the_same_bytes(run, ball_mesh, ball, tmp_path):
+    distributed = pytest.importorskip("distributed", reason="Dask is an extra")
+    local = {"processes": False, "protocol": "tcp://", "dashboard_address": None}
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=2, **local) as cluster:
+        answer = run("build", ball_mesh, "-o", tmp_path / "a.fov", "--dask", cluster.scheduler_address, "-q")
+    assert answer.exit_code == 0, answer.stderr
+    assert (tmp_path / "a.fov").read_bytes() == ball.read_bytes()
+
+
 def test_quiet_is_quiet_and_progress_goes_to_stderr(run, ball_mesh, tmp_path):
     quiet = run("build", ball_mesh, "-o", tmp_path / "a.fov", "--quiet")
     assert (quiet.stdout, quiet.stderr) == ("", "")
@@ -151,11 +174,11 @@ def test_view_serves_what_it_is_given(run, ball_mesh, tmp_path, monkeypatch, wor
         (["-q"], "http://here/\n"),
         (["--json"], '{\n "url": "http://here/"\n}\n'),
     ):
-        answer = run(*words, ball_mesh, "--no-browser", "--port", "0", *more)
+        answer = run(*words, ball_mesh, "--no-browser", "--port", "0", "--bind", "127.0.0.2", *more)
         assert (answer.exit_code, answer.stdout) == (0, told), answer.stderr
     assert {scene.title for scene, _ in served} == {"ball"}
     assert len(list((tmp_path / "cache").iterdir())) == 1
-    assert all((options["port"], options["host"]) == (0, "127.0.0.1") for _, options in served)
+    assert all((options["port"], options["host"]) == (0, "127.0.0.2") for _, options in served)
 
 
 def test_help_names_every_command_and_every_option_has_its_line(run):

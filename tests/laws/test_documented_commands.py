@@ -49,6 +49,16 @@ def test_every_option_says_what_it_does(name):
         assert getattr(parameter, "help", None), f"{name}: {parameter.opts} is not explained"
 
 
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_is_tried_by_a_test(name):
+    tried = "".join(
+        path.read_text(encoding="utf-8") for path in sorted((ROOT / "tests" / "cli").glob("*.py"))
+    )
+    for parameter in COMMANDS[name].params:
+        is_tried = any(f'"{option}"' in tried for option in parameter.opts)
+        assert is_tried or not parameter.opts[0].startswith("-"), f"{name}: {parameter.opts} is never tried"
+
+
 def test_the_options_that_the_guide_tells_exist():
     guide = (ROOT / "docs" / "guide.md").read_text(encoding="utf-8")
     known = {name for command in COMMANDS.values() for parameter in command.params for name in parameter.opts}
