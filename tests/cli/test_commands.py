@@ -174,11 +174,11 @@ def test_view_serves_what_it_is_given(run, ball_mesh, tmp_path, monkeypatch, wor
         (["-q"], "http://here/\n"),
         (["--json"], '{\n "url": "http://here/"\n}\n'),
     ):
-        answer = run(*words, ball_mesh, "--no-browser", "--port", "0", "--bind", "127.0.0.2", *more)
+        answer = run(*words, ball_mesh, "--no-browser", "--port", "0", "--bind", "localhost", *more)
         assert (answer.exit_code, answer.stdout) == (0, told), answer.stderr
     assert {scene.title for scene, _ in served} == {"ball"}
     assert len(list((tmp_path / "cache").iterdir())) == 1
-    assert all((options["port"], options["host"]) == (0, "127.0.0.2") for _, options in served)
+    assert all((options["port"], options["host"]) == (0, "localhost") for _, options in served)
 
 
 def test_help_names_every_command_and_every_option_has_its_line(run):
