@@ -10,6 +10,7 @@ import pytest
 
 from foveal.base.errors import FovealError
 from foveal.base.files import (
+    _MACHINE,
     is_filled,
     read_json,
     refuse_missing,
@@ -62,6 +63,15 @@ def test_a_killed_writer_leaves_nothing_whole_and_the_next_run_sweeps(tmp_path, 
     with globals()[what](target):
         pass
     assert names(tmp_path) == ([] if what == "scratch" else ["out"])
+
+
+def test_what_another_machine_writes_on_a_shared_disk_is_left_alone(tmp_path):
+    theirs = [".a.bin.01234567-999999999.part", ".foveal-scratch-01234567-999999999-x"]
+    for name in theirs:
+        (tmp_path / name).mkdir()
+    with whole_file(tmp_path / "a.bin"), scratch(tmp_path):
+        pass
+    assert names(tmp_path) == [*theirs, "a.bin"]
 
 
 def test_a_running_writer_is_left_alone(tmp_path):
@@ -160,7 +170,7 @@ def test_an_exchange_that_fails_half_way_is_taken_back(tmp_path, monkeypatch):
 
 
 def test_a_folder_with_litter_only_is_empty(tmp_path):
-    litter = tmp_path / ".foveal-new.999999999.part"
+    litter = tmp_path / f".foveal-new.{_MACHINE}-999999999.part"
     litter.mkdir()
     (litter / "half").write_text("half")
     assert not is_filled(tmp_path)

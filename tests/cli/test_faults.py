@@ -16,6 +16,7 @@ except ImportError:  # on Windows
     resource = None
 
 import foveal
+from foveal.base.files import _MACHINE
 from foveal.cli import main
 from foveal.mesh.io import write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere
@@ -296,7 +297,9 @@ def test_a_killed_build_leaves_nothing_whole_and_the_next_one_sweeps(interrupted
     assert not (tmp_path / "out" / "large.fov").exists()
     assert list((tmp_path / "tmp").iterdir())
     (tmp_path / "out").mkdir(exist_ok=True)
-    (tmp_path / "out" / ".large.fov.999999999.part").write_bytes(b"as a kill while writing leaves it")
+    (tmp_path / "out" / f".large.fov.{_MACHINE}-999999999.part").write_bytes(
+        b"as a kill while writing leaves it"
+    )
     write_ply(icosphere(2), tmp_path / "small.ply")
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
     assert run("build", tmp_path / "small.ply", "-o", tmp_path / "out" / "large.fov").exit_code == 0

@@ -168,6 +168,7 @@ def test_options_that_come_too_late_are_said(tmp_path, fov, option):
 
 
 def test_an_option_that_there_is_not_is_the_programmers_fault(ball, fov, tmp_path):
+    prepare(ball, folder=tmp_path / "cache")  # so that it is at hand, and nothing looks at options again
     for source in (ball, fov):
         with pytest.raises(TypeError, match="bit"):
             prepare(source, folder=tmp_path / "cache", bit=9)
@@ -183,3 +184,13 @@ def test_a_cache_that_cannot_be_written_is_said_before_any_work(tmp_path, ball, 
     with pytest.raises(FovealError, match="foveal build FILE -o"):
         prepare(ball, folder=tmp_path / "file" / "cache")
     assert builds == []
+
+
+def test_a_file_of_somebody_else_is_shown_all_the_same(tmp_path, ball, monkeypatch):
+    built = prepare(ball, folder=tmp_path / "cache")
+
+    def utime(*_, **__):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr("os.utime", utime)
+    assert prepare(ball, folder=tmp_path / "cache") == built

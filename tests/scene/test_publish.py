@@ -9,6 +9,7 @@ import urllib.request
 import pytest
 
 from foveal import FovealError
+from foveal.base.files import _MACHINE
 from foveal.scene import Layer, Scene, read_scene, scene_of
 from foveal.scene.publish import publish
 
@@ -111,7 +112,7 @@ def test_a_link_to_a_site_stays_a_link(tmp_path, fov, viewer):
 
 def test_where_one_stands_and_what_a_killed_one_left(tmp_path, fov, viewer, monkeypatch):
     here = tmp_path / "here"
-    (here / ".foveal-new.999999999.part").mkdir(parents=True)
+    (here / f".foveal-new.{_MACHINE}-999999999.part").mkdir(parents=True)
     monkeypatch.chdir(here)
     publish(scene_of(fov), ".", viewer=viewer)
     assert sorted(path.name for path in here.iterdir()) == [

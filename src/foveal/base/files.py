@@ -1,18 +1,20 @@
 """Outputs that appear whole or not at all, scratch space that leaves no litter, and a sentence, before any
 work, for what cannot be read or written.
 
-Outputs and scratch have the writer's process number in the name, so that the next run can tell what a killed
-one left behind from what a running one still needs.
+Outputs and scratch have the writer's machine and process number in the name, so that the next run can tell
+what a killed one left behind from what a running one still needs, also on a disk that machines share.
 """
 
 import errno
 import json
 import os
+import platform
 import re
 import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from hashlib import blake2b
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -34,6 +36,7 @@ __all__ = [
 
 PathLike = str | os.PathLike[str]
 
+_MACHINE = blake2b(platform.node().encode(), digest_size=4).hexdigest()
 _INSIDE = "foveal-new"  # in the hidden name of what will replace the content of a folder
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _JSON_BYTES = 16 << 20  # a scene or a camera is small; more than this is something else
@@ -131,7 +134,7 @@ def _telling_full(what: str) -> Iterator[None]:
 
 
 def _sweep(folder: Path, pattern: str) -> None:
-    """Delete what dead processes left in `folder`; `pattern` has the process number as group 1."""
+    """Delete what dead processes of this machine left in `folder`; group 1 of `pattern` is their number."""
     try:
         found = [(entry, re.fullmatch(pattern, entry.name)) for entry in folder.iterdir()]
     except OSError:
@@ -148,8 +151,8 @@ def _sweep(folder: Path, pattern: str) -> None:
 def _part(folder: Path, name: str) -> Path:
     """The hidden name in `folder` under which `name` is written, after sweeping earlier ones."""
     folder.mkdir(parents=True, exist_ok=True)
-    _sweep(folder, rf"\.{re.escape(name)}\.(\d+)\.part")
-    return folder / f".{name}.{os.getpid()}.part"
+    _sweep(folder, rf"\.{re.escape(name)}\.{_MACHINE}-(\d+)\.part")
+    return folder / f".{name}.{_MACHINE}-{os.getpid()}.part"
 
 
 @contextmanager
@@ -180,7 +183,7 @@ def whole_file(path: PathLike, /) -> Iterator[BinaryIO]:
 def is_filled(folder: PathLike, /) -> bool:
     """Whether there is anything in a folder but what a killed writer left, which is removed."""
     folder = Path(folder)
-    _sweep(folder, rf"\.{_INSIDE}\.(\d+)\.part")
+    _sweep(folder, rf"\.{_INSIDE}\.{_MACHINE}-(\d+)\.part")
     return any(folder.iterdir())
 
 
@@ -238,8 +241,8 @@ def scratch(folder: PathLike | None = None, /) -> Iterator[Path]:
     """Give an empty folder for temporary files, in `folder` or the system's place, deleted at the end."""
     root = Path(folder) if folder is not None else Path(tempfile.gettempdir())
     root.mkdir(parents=True, exist_ok=True)
-    _sweep(root, r"\.foveal-scratch-(\d+)-.*")
-    path = Path(tempfile.mkdtemp(prefix=f".foveal-scratch-{os.getpid()}-", dir=root))
+    _sweep(root, rf"\.foveal-scratch-{_MACHINE}-(\d+)-.*")
+    path = Path(tempfile.mkdtemp(prefix=f".foveal-scratch-{_MACHINE}-{os.getpid()}-", dir=root))
     try:
         with _telling_full(f"{root}: there is no room for temporary files"):
             yield path

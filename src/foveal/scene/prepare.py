@@ -8,10 +8,12 @@ by deleting what was not used for longest.
 import hashlib
 import os
 import time
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, Unpack
 
+import numpy as np
 import platformdirs
 
 from foveal.base.errors import FovealError
@@ -97,6 +99,7 @@ def prepare(
         If the file is missing or cannot be read as what it seems to be, or options are given for what is
         built already.
     """
+    _refuse_unknown(options)
     root = Path(folder) if folder is not None else cache_folder()
     shaping = {name: options.get(name) for name in _SHAPING}
     if isinstance(source, TriMesh):
@@ -111,7 +114,8 @@ def prepare(
     built = root / f"{name}.fov"
     if built.exists():
         # Only the time of use changes: that of writing is in the ETag, and browsers keep what they have.
-        os.utime(built, ns=(time.time_ns(), built.stat().st_mtime_ns))
+        with suppress(OSError):  # somebody else's file can be shown all the same
+            os.utime(built, ns=(time.time_ns(), built.stat().st_mtime_ns))
         return built
     try:
         refuse_unwritable(built)
@@ -127,22 +131,27 @@ def prepare(
 
 
 def refuse_shaping(source: PathLike, options: BuildOptions, /) -> None:
-    """Say that options came too late, for what is built already; and what is no option of a build.
+    """Say that options came too late, for what is built already.
 
     Raises
     ------
     FovealError
         If one of those that change the bytes was chosen.
     """
-    unknown = options.keys() - BuildOptions.__annotations__.keys()
-    if unknown:
-        raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
+    _refuse_unknown(options)
     chosen = [name for name in _SHAPING if options.get(name) is not None]
     if chosen:
         raise FovealError(
             f"{source}: it is built already, so {' and '.join(chosen)} would change nothing. "
             "Build it anew with 'foveal build'."
         )
+
+
+def _refuse_unknown(options: BuildOptions) -> None:
+    """What no signature says, since options pass through: a misspelt one must not be ignored."""
+    unknown = options.keys() - BuildOptions.__annotations__.keys()
+    if unknown:
+        raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
 
 
 @cache
@@ -187,7 +196,8 @@ def _fingerprint_of_mesh(mesh: TriMesh, shaping: dict[str, Any]) -> str:
     """The same for a mesh in memory."""
     state = hashlib.blake2b(f"{_builder()} {shaping}".encode())
     for array in (mesh.positions, mesh.faces, mesh.normals, mesh.colours):
-        state.update(b"none" if array is None else array.tobytes())
+        state.update(b"none" if array is None else f"{array.shape}".encode())
+        state.update(b"" if array is None else np.ascontiguousarray(array).data)
     return state.hexdigest()[:_DIGITS]
 
 
