@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from foveal import FovealError, multires
+from foveal import FovealError, TriMesh, multires
 from foveal.mesh.distance import sampled_hausdorff
 from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import bumpy_sphere
@@ -64,3 +64,12 @@ def test_a_mesh_becomes_another_format_without_a_build(tmp_path, monkeypatch):
     write_ply(bumpy_sphere(2), tmp_path / "in.ply")
     export(tmp_path / "in.ply", tmp_path / "out.glb")
     assert len(read_mesh(tmp_path / "out.glb").faces) == 320
+
+
+def test_what_glb_cannot_hold_is_said(tmp_path):
+    mesh = TriMesh.of([[0, 0, -1e300], [1, 0, 0], [0, 1, 1e300]], [[0, 1, 2]])
+    with pytest.raises(FovealError, match=r"\.ply"):
+        export(mesh, tmp_path / "a.glb")
+    assert list(tmp_path.iterdir()) == []
+    export(mesh, tmp_path / "a.ply")
+    np.testing.assert_array_equal(read_mesh(tmp_path / "a.ply").positions, mesh.positions)

@@ -121,6 +121,10 @@ def _write(mesh: TriMesh, output: Path, up: str) -> None:
     if output.suffix.lower() == ".ply":
         write_ply(mesh, output, comment="made by foveal")
     else:
+        with np.errstate(over="ignore"):
+            extent = float(np.ptp(mesh.positions, axis=0).max())
+        if extent > np.finfo(np.float32).max:
+            raise FovealError(f"{output}: GLB cannot hold a model {extent:.3g} large. Export it as .ply.")
         write_glb(mesh, output, up=up)
 
 
