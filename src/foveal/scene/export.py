@@ -123,7 +123,7 @@ def _write(mesh: TriMesh, output: Path, up: str) -> None:
     else:
         with np.errstate(over="ignore"):
             extent = float(np.ptp(mesh.positions, axis=0).max())
-        if extent > np.finfo(np.float32).max:
+        if extent > float(np.finfo(np.float32).max):
             raise FovealError(f"{output}: GLB cannot hold a model {extent:.3g} large. Export it as .ply.")
         write_glb(mesh, output, up=up)
 
