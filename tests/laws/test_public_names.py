@@ -57,7 +57,8 @@ def test_rooms_are_there_without_importing_each():
     child = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert child.stdout.split() == ["picture", "TriMesh"]
     rooms = {Path(path).parent.name for path in Path(foveal.__path__[0]).glob("*/__init__.py")}
-    assert rooms - {"cli"} <= set(dir(foveal))
+    missing = rooms - {"cli"} - set(dir(foveal))
+    assert not missing, f"name {', '.join(missing)} in _ROOMS of foveal/__init__.py"
 
 
 def test_view_is_both_the_room_and_the_verb():

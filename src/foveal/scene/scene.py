@@ -112,7 +112,8 @@ def read_scene(path: PathLike, /) -> Scene:
         raise FovealError(f'{path}: this is not a scene.json; it needs "version" and "layers".')
     if data["version"] != VERSION:
         raise FovealError(
-            f"{path}: scene version {data['version']!r} is not known; this foveal reads version {VERSION}."
+            f"{path}: scene version {data['version']!r} is not known; this foveal reads version {VERSION}. "
+            "Use a newer one."
         )
     layers = _list(data, "layers", path)
     if not layers:
