@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from foveal.base.tasks import ordered_map, thread_count, threads
+from foveal.base.tasks import ordered_map, thread_count, threads, threads_unless
 
 
 def test_results_come_in_order_and_few_are_in_flight():
@@ -47,3 +47,14 @@ def test_worker_counts():
     assert thread_count() >= 1
     with pytest.raises(ValueError, match="at least 1"):
         thread_count(0)
+
+
+def test_threads_where_no_executor_is_given_and_a_given_one_stays_its_owners():
+    with threads(1) as own:
+        with threads_unless(own) as pool:
+            assert pool is own
+        assert own.submit(abs, -1).result() == 1
+    with threads_unless(None) as pool:
+        assert pool.submit(abs, -1).result() == 1
+    with pytest.raises(RuntimeError):
+        pool.submit(abs, -1)

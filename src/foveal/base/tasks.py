@@ -4,9 +4,10 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import TypeVar
 
-__all__ = ["Executor", "ordered_map", "thread_count", "threads"]
+__all__ = ["Executor", "ordered_map", "thread_count", "threads", "threads_unless"]
 
 A = TypeVar("A")
 R = TypeVar("R")
@@ -30,6 +31,16 @@ def threads(workers: int | None = None) -> ThreadPoolExecutor:
     `distributed.Client(...).get_executor()`.
     """
     return ThreadPoolExecutor(thread_count(workers), thread_name_prefix="foveal")
+
+
+@contextmanager
+def threads_unless(executor: Executor | None, /) -> Iterator[Executor]:
+    """The executor that was given, which stays its owner's, or local threads for as long as the block."""
+    if executor is not None:
+        yield executor
+        return
+    with threads() as pool:
+        yield pool
 
 
 def ordered_map(

@@ -11,7 +11,7 @@ from PIL import Image
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, whole_file
 from foveal.base.progress import SILENT, Progress
-from foveal.base.tasks import Executor, ordered_map, threads
+from foveal.base.tasks import Executor, ordered_map, threads_unless
 from foveal.mesh.normals import vertex_normals
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
@@ -118,22 +118,9 @@ def picture(
     """
     if not 1 <= supersampling <= 8:
         raise ValueError(f"supersampling must be from 1 to 8, got {supersampling}")
-    if executor is None:
-        with threads() as pool:
-            return picture(
-                *(mesh, camera),
-                background=background,
-                supersampling=supersampling,
-                is_flat=is_flat,
-                has_colours=has_colours,
-                plain=plain,
-                executor=pool,
-                progress=progress,
-            )
     behind = _background(background, camera)
     linear_of = tables()[0].astype(np.float32)
     wide = replace(camera, width=camera.width * supersampling, height=camera.height * supersampling)
-    screen = Screen(mesh.positions, mesh.faces, wide, executor=executor)
     normals = None if is_flat else vertex_normals(mesh) if mesh.normals is None else mesh.normals
     colours = mesh.colours if has_colours else None
     out = np.empty((camera.height, camera.width, 4), dtype=np.uint8)
@@ -155,10 +142,12 @@ def picture(
         samples = (np.concatenate(linear), np.concatenate(face_ids))
         kernels.develop(*samples, supersampling, back, behind is not None, tables()[1], out[rows])
 
-    groups = -(-screen.bands // bands_a_group)
-    with progress.stage("Drawing", float(groups)) as stage:
-        for _ in ordered_map(executor, draw, range(groups), ahead=AHEAD):
-            stage.advance()
+    with threads_unless(executor) as pool:
+        screen = Screen(mesh.positions, mesh.faces, wide, executor=pool)
+        groups = -(-screen.bands // bands_a_group)
+        with progress.stage("Drawing", float(groups)) as stage:
+            for _ in ordered_map(pool, draw, range(groups), ahead=AHEAD):
+                stage.advance()
     return Picture.of(out, camera)
 
 

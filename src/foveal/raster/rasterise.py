@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
-from foveal.base.tasks import Executor, ordered_map, threads
+from foveal.base.tasks import Executor, ordered_map, threads_unless
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
@@ -213,10 +213,6 @@ def rasterise(
            [-1, -1, -1, -1]], dtype=int32)
     """
     mesh = TriMesh.of(positions, faces)
-    if executor is None:
-        with threads() as pool:
-            return rasterise(mesh.positions, mesh.faces, camera, executor=pool)
-    screen = Screen(mesh.positions, mesh.faces, camera, executor=executor)
     shape = (camera.height, camera.width)
     depth, face_ids = np.empty(shape, dtype=np.float32), np.empty(shape, dtype=np.int32)
     weights = np.empty((*shape, 3), dtype=np.float32)
@@ -227,5 +223,7 @@ def rasterise(
         depth[rows] = np.where(face_ids[rows] >= 0, 1 / nearest, np.inf)
         weights[rows] = screen.weigh(band, face_ids[rows])
 
-    run_all(executor, draw, range(screen.bands))
+    with threads_unless(executor) as pool:
+        screen = Screen(mesh.positions, mesh.faces, camera, executor=pool)
+        run_all(pool, draw, range(screen.bands))
     return GBuffer(depth, face_ids, weights)
