@@ -35,7 +35,7 @@ def test_every_tool_has_a_name_and_switches_say_their_state(open_page):
         assert (np.abs(picture(page).astype(int) - plain).max(axis=2) > 20).mean() > 0.005, name
         button.evaluate("button => button.click()")
         idle(page)
-        assert np.abs(picture(page).astype(int) - plain).mean() < 0.5
+        assert np.abs(picture(page).astype(int) - plain).mean() < 0.5, name
 
 
 def test_colours_off_is_plaster(open_page):

@@ -133,6 +133,17 @@ def test_two_layers_share_the_budgets(open_page, site, tmp_path):
     assert 0 < stats(hidden)["triangles"] < both["triangles"]
 
 
+def test_no_shader_is_left_for_the_first_gesture_to_make(open_page):
+    page = open_page()
+    programs = stats(page)["gpu"]["programs"]
+    page.mouse.move(320, 240)
+    page.mouse.wheel(0, -200)
+    idle(page)
+    page.mouse.dblclick(300, 220)
+    idle(page)
+    assert stats(page)["gpu"]["programs"] == programs
+
+
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 def test_reduced_motion_has_no_flights(open_page, motion):
     page = open_page(reduced_motion=motion)

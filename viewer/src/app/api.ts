@@ -14,15 +14,15 @@ export interface Stats {
   readonly triangleBudget: number;
   /** Largest screen error in view, pixels. */
   readonly errorPx: number;
-  /** What is aimed at while the picture is still. */
+  /** What is aimed at, pixels. */
   readonly targetPx: number;
-  /** Factor on it in motion. */
-  readonly motionFactor: number;
+  /** What this device draws in time, learned from its frames; infinite until they were too slow. */
+  readonly motionTriangles: number;
   readonly inFlight: number;
   /** Milliseconds between frames that followed each other at once, the latest last. */
   readonly frameTimes: readonly number[];
   readonly frames: number;
-  readonly gpu: { readonly geometries: number; readonly textures: number };
+  readonly gpu: { readonly geometries: number; readonly textures: number; readonly programs: number };
   /** Milliseconds since the navigation began. */
   readonly moments: { readonly firstPicture?: number; readonly firstSettled?: number };
   readonly isWholeFile: boolean;

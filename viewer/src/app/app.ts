@@ -175,7 +175,7 @@ export class App {
 
   stats(): Stats {
     const { stage } = this;
-    const { geometries, textures } = stage.renderer.info.memory;
+    const { memory, programs } = stage.renderer.info;
     return {
       triangles: stage.drawnTriangles,
       patches: stage.drawnPatches,
@@ -186,12 +186,12 @@ export class App {
       memoryBudgetBytes: this.#streamer.budgetBytes,
       triangleBudget: stage.triangleBudget,
       errorPx: stage.errorPx,
-      targetPx: stage.target.basePx,
-      motionFactor: stage.target.factor,
+      targetPx: stage.targetPx,
+      motionTriangles: stage.motion.triangles,
       inFlight: this.#streamer.inFlight,
       frameTimes: [...stage.frameTimes],
       frames: this.#frames,
-      gpu: { geometries, textures },
+      gpu: { geometries: memory.geometries, textures: memory.textures, programs: programs?.length ?? 0 },
       moments: stage.moments,
       isWholeFile: stage.layers.some((layer) => layer.asset.source.whole !== null),
     };
@@ -204,7 +204,7 @@ export class App {
     stage.arePatchesTinted = state.arePatchesTinted;
     stage.isWireframe = state.isWireframe;
     stage.areSpheresOn = state.areSpheresOn;
-    stage.target.basePx = state.errorPx ?? defaultBudgets(deviceHints()).errorPx;
+    stage.targetPx = state.errorPx ?? defaultBudgets(deviceHints()).errorPx;
     stage.layers.forEach((layer, i) => {
       layer.group.visible = this.scene.layers[i]!.isVisible !== state.toggledLayers.includes(i);
     });

@@ -19,7 +19,7 @@ export function settingsOf(app: App): SettingsOptions {
         high: 16,
         isLogarithmic: true,
         show: (value) => `${value} px`,
-        get: () => stage.target.basePx,
+        get: () => stage.targetPx,
         set: (errorPx) => app.setErrorPx(errorPx),
       },
       {

@@ -24,7 +24,8 @@ export class Fade {
 
   /** Move towards what is expanded by so many milliseconds. Node 0 is there at once: it covers nothing. */
   advance(expanded: Uint8Array, elapsed: number): void {
-    const stride = this.duration > 0 ? elapsed / this.duration : 1;
+    // Where frames are so slow that it would be seen in one of them, it would only cost: both are drawn.
+    const stride = 2 * elapsed > this.duration ? 1 : elapsed / this.duration;
     for (let node = 0; node < this.phase.length; node++) {
       const goal = expanded[node] ? 1 : 0;
       const now = this.phase[node]!;

@@ -26,8 +26,7 @@ void main() {
   // whole numbers are added as such: what follows knows the grid point, not the patch (gridPlace.ts)
   vec4 seen = toEye * vec4(vec3(ivec3(position) + offset), 1.0);
   vPosition = seen.xyz;
-  // the matrix turns, moves and scales evenly, so its inverse transpose turns normals as it stands
-  vNormal = isFlat ? vec3(0.0) : mat3(toEye) * unfold(octahedral) / length(toEye[0]);
+  vNormal = isFlat ? vec3(0.0) : mat3(viewMatrix) * unfold(octahedral); // the grid is moved and scaled, not turned
   vSrgb = srgb;
   gl_Position = projectionMatrix * seen;
 }

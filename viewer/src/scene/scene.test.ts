@@ -1,10 +1,10 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { ErrorTarget } from "./adapt";
 import { defaultBudgets } from "./device";
 import { Fade } from "./fade";
 import { frameOf, fromFrame, SCENE_RADIUS, toFrame } from "./frame";
-import { type Rgb, shade } from "./shading";
+import { LEAST_TRIANGLES, MotionBudget } from "./motionBudget";
+import { decode, encode, type Rgb, shade, shadeFast } from "./shading";
 
 describe("shading", () => {
   const golden = JSON.parse(
@@ -17,6 +17,15 @@ describe("shading", () => {
       shade(colour, normal, facing, shadow).forEach((byte, i) => {
         expect(Math.abs(byte - pixel[i]!)).toBeLessThanOrEqual(1);
       });
+    }
+  });
+
+  it("is in the shader the same within a third of a level, for every colour in every light", () => {
+    for (let byte = 0; byte < 256; byte++) {
+      for (let light = 0.08; light <= 1.15; light += 0.001) {
+        const true_ = encode(Math.min(1, decode(byte / 255) * light));
+        expect(255 * Math.abs(shadeFast(byte / 255, light) - true_)).toBeLessThan(1 / 3);
+      }
     }
   });
 });
@@ -56,6 +65,9 @@ describe("fade", () => {
     fade.advance(expanded, 80);
     expect([...fade.phase]).toEqual([1, 1]);
     expect(fade.isMoving).toBe(false);
+    const slow = new Fade(2, 150);
+    slow.advance(expanded, 76); // a single step between would be no fade
+    expect([...slow.phase]).toEqual([1, 1]);
     const sudden = new Fade(2, 0);
     sudden.advance(expanded, 1);
     expect([...sudden.phase]).toEqual([1, 1]);
@@ -77,36 +89,63 @@ describe("fade", () => {
   });
 });
 
-describe("error target", () => {
-  /** Frames of a machine that draws so many milliseconds a picture at one pixel; cost falls as the error rises. */
-  function run(target: ErrorTarget, costAtOnePixel: number, frames: number): number {
-    for (let i = 0; i < frames; i++) target.frame(16.7 + costAtOnePixel / target.pixels(true));
-    return target.pixels(true);
+describe("motion budget", () => {
+  /** Frames of a machine that takes so long for the rest of a picture, and for a million triangles. */
+  function run(budget: MotionBudget, rest: number, million: number, frames: number, wish = 1e6): number {
+    const late = [wish, wish]; // what was asked for shows in the interval after the next
+    for (let i = 0; i < frames; i++) {
+      late.push(Math.min(wish, budget.triangles));
+      const drawn = late.shift()!;
+      budget.frame(rest + (drawn * million) / 1e6, drawn, true);
+    }
+    return Math.min(wish, budget.triangles);
   }
 
-  it("rises on a slow machine to where frames are in time, and rests there", () => {
-    const target = new ErrorTarget(1);
-    const there = run(target, 80, 200);
-    expect(16.7 + 80 / there).toBeCloseTo(25, 0);
-    expect(run(target, 80, 50)).toBeCloseTo(there, 1);
+  it("leaves a quick machine alone", () => {
+    const budget = new MotionBudget();
+    run(budget, 10, 10, 500);
+    expect(budget.triangles).toBe(Number.POSITIVE_INFINITY);
   });
 
-  it("falls back to the visitor's own when frames are quick again, and at rest at once", () => {
-    const target = new ErrorTarget(2);
-    run(target, 800, 100);
-    expect(target.pixels(true)).toBeGreaterThan(4);
-    expect(target.pixels(false)).toBe(2);
-    expect(run(target, 0, 200)).toBe(2);
+  it("falls on a slow machine to where frames are in time, and stays about there", () => {
+    const budget = new MotionBudget();
+    run(budget, 10, 100, 60);
+    for (let i = 0; i < 40; i++) {
+      const milliseconds = 10 + (run(budget, 10, 100, 5) * 100) / 1e6;
+      expect(milliseconds).toBeGreaterThan(15);
+      expect(milliseconds).toBeLessThan(32);
+    }
   });
 
-  it("has an end, and does not take a pause for a slow frame", () => {
-    const target = new ErrorTarget(1);
-    for (let i = 0; i < 200; i++) target.frame(350);
-    expect(target.pixels(true)).toBeCloseTo(16);
-    const calm = new ErrorTarget(1);
-    run(calm, 0, 5);
-    calm.frame(60_000);
-    expect(calm.pixels(true)).toBe(1);
+  it("is there in a dozen frames where frames take half a second", () => {
+    const budget = new MotionBudget();
+    expect(10 + (run(budget, 10, 500, 16) * 500) / 1e6).toBeLessThan(50);
+  });
+
+  it("keeps a least, which costs little, where the rest of the picture is what takes the time", () => {
+    const budget = new MotionBudget();
+    expect(run(budget, 90, 300, 100)).toBe(LEAST_TRIANGLES);
+    run(budget, 10, 10, 2000);
+    expect(budget.triangles).toBeGreaterThan(1e6); // and comes back
+  });
+
+  it("does not take for tried what was not used", () => {
+    const budget = new MotionBudget();
+    const there = run(budget, 10, 100, 100);
+    run(budget, 10, 100, 1000, 1000); // far away there is next to nothing to draw
+    expect(budget.triangles).toBeLessThan(2 * there);
+  });
+
+  it("learns from frames at rest, where it rules nothing, without running away", () => {
+    const budget = new MotionBudget();
+    for (let i = 0; i < 100; i++) budget.frame(100, 1e6, false);
+    expect(budget.triangles).toBeCloseTo(250_000, -4);
+  });
+
+  it("does not take a pause for a slow frame", () => {
+    const budget = new MotionBudget();
+    for (let i = 0; i < 50; i++) budget.frame(i % 5 === 4 ? 60_000 : 17, 1e6, true);
+    expect(budget.triangles).toBe(Number.POSITIVE_INFINITY);
   });
 });
 

@@ -1,16 +1,16 @@
 /** The picture: renderer, camera, layers and the one loop, which runs only while something changes. */
-import { Scene, type Vector3, type WebGLRenderer } from "three";
+import { type Material, Scene, type Vector3, type WebGLRenderer } from "three";
 import type { Asset } from "../stream/asset";
 import type { NodeAt, Streamer } from "../stream/streamer";
-import { ErrorTarget } from "./adapt";
 import { Background, type BackgroundColours } from "./background";
 import { MAX_PIXEL_RATIO } from "./device";
 import { type Frame, frameOf, halfBoxOf } from "./frame";
 import { Layer } from "./layer";
 import { makeMaterials } from "./material";
+import { MotionBudget } from "./motionBudget";
 import { type CameraState, Navigation } from "./navigation";
 import { Picker } from "./picking";
-import { makeRenderer } from "./renderer";
+import { makeGraphics, waitUntilDrawn } from "./renderer";
 import { SphereLines } from "./spheres";
 import { viewOf } from "./view";
 
@@ -36,12 +36,14 @@ const FRAME_TIMES_KEPT = 600;
 export class Stage {
   readonly navigation: Navigation;
   readonly renderer: WebGLRenderer;
-  readonly target: ErrorTarget;
   readonly layers: Layer[] = [];
   /** Milliseconds between frames that followed each other at once, the latest last. */
   readonly frameTimes: number[] = [];
   /** Moments since the navigation began, in milliseconds. */
   readonly moments: { firstPicture?: number; firstSettled?: number } = {};
+  readonly motion = new MotionBudget();
+  /** Error aimed at, in pixels. */
+  targetPx: number;
   triangleBudget: number;
   drawnTriangles = 0;
   drawnPatches = 0;
@@ -53,6 +55,7 @@ export class Stage {
   readonly #background = new Background();
   readonly #spheres = new SphereLines();
   readonly #picker: Picker;
+  readonly #isSoftware: boolean;
   #streamer: Streamer | undefined;
   #frame: Frame = { centre: [0, 0, 0], scale: 1 };
   #areSpheresOn = false;
@@ -69,9 +72,11 @@ export class Stage {
     readonly canvas: HTMLCanvasElement,
     private readonly options: StageOptions,
   ) {
-    this.renderer = makeRenderer(canvas);
+    const { renderer, isSoftware } = makeGraphics(canvas);
+    this.renderer = renderer;
+    this.#isSoftware = isSoftware;
     this.renderer.info.autoReset = false;
-    this.target = new ErrorTarget(options.errorPx);
+    this.targetPx = options.errorPx;
     this.triangleBudget = options.triangleBudget;
     this.navigation = new Navigation(canvas, () => this.invalidate(), options.isStill);
     this.#picker = new Picker(this.renderer, this.#materials);
@@ -163,8 +168,10 @@ export class Stage {
   /** The point under a place of the page, or null over the background. */
   pick(clientX: number, clientY: number): Vector3 | null {
     const box = this.canvas.getBoundingClientRect();
-    const x = (clientX - box.left) / box.width;
-    const y = (clientY - box.top) / box.height;
+    return this.#pickAt((clientX - box.left) / box.width, (clientY - box.top) / box.height);
+  }
+
+  #pickAt(x: number, y: number): Vector3 | null {
     const hidden = [this.#background.mesh, this.#spheres.lines];
     return this.#picker.pick(x, y, this.#scene, this.navigation.camera, hidden);
   }
@@ -184,7 +191,7 @@ export class Stage {
     const interval = now - this.#last;
     this.#last = now;
     if (this.#isConsecutive) this.#note(interval);
-    else this.target.restart();
+    else this.motion.restart();
     // after a rest the clock begins anew: a long pause is not a long step
     const elapsed = this.#isConsecutive ? Math.min(interval, 100) : 16;
     const hasMoved = this.navigation.controls.update(elapsed / 1000);
@@ -192,6 +199,7 @@ export class Stage {
     const isMoving = now - this.#lastMoved < SETTLE_MS;
     this.#prepare(elapsed, isMoving);
     if (this.layers.length) this.#render(); // before, the page's own background is enough
+    if (isMoving && this.#isSoftware) waitUntilDrawn(this.renderer);
     const isFading = this.layers.some((layer) => layer.fade.isMoving);
     this.#isConsecutive = hasMoved || isFading || isMoving || this.#hasUploads;
     if (this.#isConsecutive) this.invalidate();
@@ -233,15 +241,18 @@ export class Stage {
   /** One cut a layer, what one leaves of the budgets passed on to the next; what is missing is asked for. */
   #select(streamer: Streamer, isMoving: boolean): void {
     const visible = this.layers.filter((layer) => layer.group.visible);
-    const errorPx = this.target.pixels(isMoving);
-    let triangles = this.triangleBudget;
+    let triangles = isMoving ? Math.min(this.triangleBudget, this.motion.triangles) : this.triangleBudget;
     let bytes = CUT_SHARE * streamer.budgetBytes;
     const wanted: (NodeAt & { key: number })[] = [];
     this.errorPx = 0;
     visible.forEach((layer, i) => {
       const share = visible.length - i;
       const view = viewOf(this.navigation.camera, this.canvas.height, layer.frame, layer.asset);
-      layer.select(view, { errorPx, triangleBudget: triangles / share, byteBudget: bytes / share });
+      layer.select(view, {
+        errorPx: this.targetPx,
+        triangleBudget: triangles / share,
+        byteBudget: bytes / share,
+      });
       const { selection } = layer;
       triangles -= selection.triangles;
       bytes -= selection.heldBytes;
@@ -266,18 +277,28 @@ export class Stage {
     renderer.render(this.#scene, this.navigation.camera);
     this.drawnPatches = this.layers.reduce((sum, layer) => sum + layer.drawnPatches, 0);
     this.drawnTriangles = this.layers.reduce((sum, layer) => sum + layer.drawnTriangles, 0);
-    if (this.#isWireframe) this.#renderWires();
+    if (this.#isWireframe) this.#renderOver(this.#materials.wire);
     if (this.drawnPatches > 0) this.moments.firstPicture ??= performance.now();
   }
 
-  /** The same again as thin lines over it. */
-  #renderWires(): void {
+  /** Make what the first fade and the first pick would make: 180 ms a shader where the processor draws. */
+  #warmUp(): void {
+    const { renderer } = this;
+    renderer.setScissorTest(true);
+    renderer.setScissor(0, 0, 1, 1);
+    this.#renderOver(this.#materials.fading); // looks the same: what does not fade shows in all pixels
+    renderer.setScissorTest(false);
+    this.#pickAt(0.5, 0.5);
+  }
+
+  /** The patches again, over the picture. */
+  #renderOver(material: Material): void {
     const { renderer } = this;
     const hidden = [this.#background.mesh, this.#spheres.lines];
     const were = hidden.map((object) => object.visible);
     for (const object of hidden) object.visible = false;
     renderer.autoClear = false;
-    this.#scene.overrideMaterial = this.#materials.wire;
+    this.#scene.overrideMaterial = material;
     renderer.render(this.#scene, this.navigation.camera);
     this.#scene.overrideMaterial = null;
     hidden.forEach((object, i) => {
@@ -288,13 +309,14 @@ export class Stage {
   #note(interval: number): void {
     this.frameTimes.push(interval);
     if (this.frameTimes.length > FRAME_TIMES_KEPT) this.frameTimes.shift();
-    if (this.#last - this.#lastMoved < SETTLE_MS) this.target.frame(interval);
+    this.motion.frame(interval, this.drawnTriangles, this.#last - this.#lastMoved < SETTLE_MS);
   }
 
   #rest(): void {
     this.#isIdle = true;
-    this.moments.firstSettled ??= performance.now();
     for (const resolve of this.#waiting.splice(0)) resolve();
+    if (this.moments.firstSettled === undefined) this.#warmUp();
+    this.moments.firstSettled ??= performance.now();
   }
 
   /** Wheel: bring the pivot to the surface under the cursor, once a gesture. */
