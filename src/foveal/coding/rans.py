@@ -34,19 +34,14 @@ def normalise(counts: ArrayLike, /, *, bits: int) -> NDArray[np.int32]:
     total = int(amounts.sum())
     if amounts.ndim != 1 or total <= 0 or amounts.min() < 0 or np.count_nonzero(amounts) > 1 << bits:
         raise ValueError("counts must be (symbols,), at least 0, some above 0, at most 2^bits of those")
-    shared = [int(a) << bits for a in amounts]
-    frequencies = np.array([max(s // total, int(s > 0)) for s in shared], dtype=np.int64)
+    shared = amounts << bits
+    frequencies: NDArray[np.int64] = np.maximum(shared // total, shared > 0)
     # What rounding left over goes where it helps most; what the floors took too much comes from the largest.
     while (missing := (1 << bits) - int(frequencies.sum())) != 0:
         if missing > 0:
-            frequencies[max(range(len(shared)), key=lambda i: shared[i] / (frequencies[i] + 0.5))] += 1
+            frequencies[np.argmax(shared / (frequencies + 0.5))] += 1
         else:
-            frequencies[
-                min(
-                    (i for i in range(len(shared)) if frequencies[i] > 1),
-                    key=lambda i: shared[i] / (frequencies[i] - 0.5),
-                )
-            ] -= 1
+            frequencies[np.argmin(np.where(frequencies > 1, shared / (frequencies - 0.5), np.inf))] -= 1
     return frequencies.astype(np.int32)
 
 

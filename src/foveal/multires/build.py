@@ -180,7 +180,7 @@ def build(
         def choose_grid(_: Any, cells: Any) -> Grid:
             nonlocal chosen
             if chosen is None:
-                chosen = choose_step(cells, intake.fine_step)
+                chosen = choose_step(cells, intake.fine_step, pool)
             return _grid(intake, chosen)
 
         levels.run(choose_grid, progress)

@@ -1,5 +1,6 @@
 """The grid's step, from how large the errors of simplification are anyway."""
 
+from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,13 +22,14 @@ _SAMPLES = 4
 _SHARE = 0.25
 
 
-def choose_step(cells: "Cells", fine_step: float, /) -> float:
+def choose_step(cells: "Cells", fine_step: float, executor: Executor, /) -> float:
     """Simplify some cells on the door's grid and derive the step from the median of their errors.
 
     Parameters
     ----------
     cells : Cells
         Of the first level, positions in `fine_step`.
+    executor : Executor
 
     Returns
     -------
@@ -36,22 +38,25 @@ def choose_step(cells: "Cells", fine_step: float, /) -> float:
     """
     full = [c for c in cells.content if c]
     every = max(1, len(full) // _SAMPLES)
-    errors = []
-    for content in full[::every][:_SAMPLES]:
-        whole, _ = join([Piece.of(cells.store.get(ref)) for _, ref in content])
-        middle = whole.positions[0]
-        faces = whole.faces[is_proper(whole.faces)]
-        if len(faces) == 0:
-            continue
-        # In units of 2^6 fine steps: quadrics of numbers this size keep ten digits, and that new vertices
-        # are put on whole units is an eighth of the least step at most.
-        local = (whole.positions.astype(np.float64) - middle) / 64.0
-        size = len(faces)
-        coarse = simplify(local, faces, _border(whole), target=size // 2, relaxed_above=size)
-        found = deviation(local, faces, np.zeros(size, np.float32), coarse)
-        errors.append(float(np.max(found, initial=0.0)) * 64.0)
+    samples = [[Piece.of(cells.store.get(ref)) for _, ref in content] for content in full[::every][:_SAMPLES]]
+    errors = [error for error in executor.map(_error, samples) if error is not None]
     wanted = float(np.median(errors or [0.0])) * _SHARE / (np.sqrt(3.0) / 2.0)
     return float(np.clip(wanted, 1 << 9, 1 << 19)) * fine_step
+
+
+def _error(pieces: list[Piece]) -> float | None:
+    """The error of a cell's first simplification, in the unit of its positions; None where all is flat."""
+    whole, _ = join(pieces)
+    faces = whole.faces[is_proper(whole.faces)]
+    if len(faces) == 0:
+        return None
+    # In units of 2^6 fine steps: quadrics of numbers this size keep ten digits, and that new vertices are
+    # put on whole units is an eighth of the least step at most.
+    local = (whole.positions.astype(np.float64) - whole.positions[0]) / 64.0
+    size = len(faces)
+    coarse = simplify(local, faces, _border(whole), target=size // 2, relaxed_above=size)
+    found = deviation(local, faces, np.zeros(size, np.float32), coarse)
+    return float(np.max(found, initial=0.0)) * 64.0
 
 
 def _border(whole: Piece) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
