@@ -6,24 +6,26 @@ import { Stage } from "../scene/stage";
 import type { Asset } from "../stream/asset";
 import type { DecoderPool } from "../stream/pool";
 import { Streamer } from "../stream/streamer";
+import { Address } from "./address";
 import type { Stats } from "./api";
 import { makeHelp } from "./dialogs";
-import { byId, make } from "./dom";
-import { watchPointer } from "./gestures";
-import { isField, pressKey } from "./keys";
+import { byId } from "./dom";
+import { watchPointer, watchWheel } from "./gestures";
+import { watchKeys } from "./keyboard";
+import { showViews } from "./namedViews";
 import { announce, note, showWarning } from "./notices";
 import { settingsOf } from "./ownSettings";
 import type { SceneFile } from "./sceneFile";
 import { makeSettings } from "./settings";
 import { copyLink, savePicture } from "./sharing";
-import { formatState, INITIAL, parseState, type State } from "./state";
+import { INITIAL, type State } from "./state";
+import { figuresOf, statsOf } from "./stats";
 import { StatusLine } from "./statusLine";
 import { applyTheme, backgroundOf, onDeviceTheme, resolveTheme } from "./theme";
 import { type Tool, Toolbar } from "./toolbar";
 import { makeTools } from "./tools";
-import { directionWords, WORDS } from "./words";
+import { WORDS } from "./words";
 
-const ADDRESS_PAUSE_MS = 400;
 const stillQuery = matchMedia("(prefers-reduced-motion: reduce)");
 
 export class App {
@@ -35,8 +37,10 @@ export class App {
   readonly #help = makeHelp();
   #settings: HTMLDialogElement | undefined;
   #state: State = INITIAL;
-  #addressTimer = 0;
-  #spokenTimer = 0;
+  readonly #address = new Address(
+    () => (this.stage.layers.length ? this.state : null),
+    (state) => this.#goTo(state),
+  );
   #lostStrip: HTMLElement | undefined;
   #frames = 0;
   #firstPicture: (() => void) | undefined;
@@ -98,10 +102,10 @@ export class App {
     this.stage.open(this.#streamer, parts);
     this.stage.navigation.setUp(UP[assets[0]!.info.up]);
     this.stage.navigation.home(false);
-    this.#readAddress();
+    this.#address.read();
     const triangles = assets.reduce((sum, { info }) => sum + info.triangles, 0);
     byId("subtitle").textContent = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
-    this.#makeViews();
+    showViews(this.scene.views, (camera) => this.stage.setCamera(camera, true));
     this.#toolbar.update();
     if (assets.some(({ source }) => source.whole)) note(WORDS.wholeFile);
     this.stage.invalidate();
@@ -111,7 +115,7 @@ export class App {
   change(change: Partial<State>): void {
     this.#state = { ...this.#state, ...change };
     this.#applyState();
-    this.#rememberSoon();
+    this.#address.writeSoon();
   }
 
   home(): void {
@@ -137,13 +141,31 @@ export class App {
     return (["x", "y", "z"] as const)[up.indexOf(Math.max(...up))] ?? "y";
   }
 
+  /** Turn about the point under this place of the page from now on. */
+  setPivot(clientX: number, clientY: number): void {
+    const point = this.stage.pick(clientX, clientY);
+    if (point) this.stage.navigation.focus(point);
+    announce(point ? WORDS.pivot : WORDS.nothingThere);
+    this.stage.invalidate();
+  }
+
+  toggleLayer(index: number): void {
+    const { toggledLayers } = this.#state;
+    const isToggled = toggledLayers.includes(index);
+    this.change({
+      toggledLayers: isToggled
+        ? toggledLayers.filter((i) => i !== index)
+        : [...toggledLayers, index].sort((a, b) => a - b),
+    });
+  }
+
   async savePicture(): Promise<void> {
     await savePicture(await this.stage.screenshot(), this.scene.title);
     note(WORDS.pictureSaved);
   }
 
   async copyLink(): Promise<void> {
-    this.#remember();
+    this.#address.write();
     await copyLink(location.href);
   }
 
@@ -174,42 +196,24 @@ export class App {
   }
 
   stats(): Stats {
-    const { stage } = this;
-    const { memory, programs } = stage.renderer.info;
-    return {
-      triangles: stage.drawnTriangles,
-      patches: stage.drawnPatches,
-      receivedBytes: this.#streamer.receivedBytes,
-      allBytes: stage.layers.reduce((sum, layer) => sum + layer.fileBytes, 0),
-      cacheBytes: this.#streamer.cachedBytes,
-      cacheNodes: this.#streamer.cachedNodes,
-      memoryBudgetBytes: this.#streamer.budgetBytes,
-      triangleBudget: stage.triangleBudget,
-      errorPx: stage.errorPx,
-      targetPx: stage.targetPx,
-      motionTriangles: stage.motion.triangles,
-      inFlight: this.#streamer.inFlight,
-      frameTimes: [...stage.frameTimes],
-      frames: this.#frames,
-      gpu: { geometries: memory.geometries, textures: memory.textures, programs: programs?.length ?? 0 },
-      moments: stage.moments,
-      isWholeFile: stage.layers.some((layer) => layer.asset.source.whole !== null),
-    };
+    return statsOf(this.stage, this.#streamer, this.#frames);
+  }
+
+  #goTo(state: State): void {
+    this.#state = state;
+    if (state.camera) this.stage.setCamera(state.camera);
+    this.#applyState();
   }
 
   #applyState(): void {
     const { stage } = this;
     const state = this.#state;
-    stage.areColoursOn = state.areColoursOn;
-    stage.arePatchesTinted = state.arePatchesTinted;
-    stage.isWireframe = state.isWireframe;
-    stage.areSpheresOn = state.areSpheresOn;
+    stage.look = { ...state, background: backgroundOf(state.background, state.theme, this.scene.background) };
     stage.targetPx = state.errorPx ?? defaultBudgets(deviceHints()).errorPx;
     stage.layers.forEach((layer, i) => {
       layer.group.visible = this.scene.layers[i]!.isVisible !== state.toggledLayers.includes(i);
     });
     applyTheme(state.theme);
-    stage.background = backgroundOf(state.background, state.theme, this.scene.background);
     this.#status.isShown = state.isStatusOn;
     this.#toolbar.update();
     stage.invalidate();
@@ -220,63 +224,21 @@ export class App {
     stillQuery.addEventListener("change", () => {
       this.stage.isStill = stillQuery.matches;
     });
-    addEventListener("hashchange", () => this.#readAddress());
     addEventListener("online", () => this.#streamer.retry());
     document.addEventListener("fullscreenchange", () => this.#toolbar.update());
-    document.addEventListener("keydown", (event) => this.#onKey(event));
-    watchPointer(this.stage, (x, y) => this.#setPivot(x, y));
-  }
-
-  #onKey(event: KeyboardEvent): void {
-    if (isField(event.target) || document.querySelector("dialog[open]")) return;
-    const { navigation } = this.stage;
-    const isDone = pressKey(event, {
-      orbit: (right, up) => navigation.orbit(right, up),
-      pan: (right, up) => navigation.pan(right, up),
-      zoom: (factor) => navigation.zoom(factor),
-      view: (number) => {
-        const button = byId("views").querySelectorAll("button")[number - 1];
-        button?.click();
-        return button !== undefined;
-      },
-      tool: (letter) => {
-        const tool = this.#tools.find(({ key }) => key === letter);
-        if (!tool?.isDisabled?.()) tool?.run();
-        return tool !== undefined;
-      },
-    });
-    if (isDone) {
-      event.preventDefault();
-      this.#sayDirectionSoon();
-    } else if (event.code === "Enter" && event.target === this.stage.canvas) {
-      const box = this.stage.canvas.getBoundingClientRect();
-      this.#setPivot(box.left + box.width / 2, box.top + box.height / 2);
-    }
-  }
-
-  #setPivot(clientX: number, clientY: number): void {
-    const point = this.stage.pick(clientX, clientY);
-    if (point) this.stage.navigation.focus(point);
-    announce(point ? WORDS.pivot : WORDS.nothingThere);
-    this.stage.invalidate();
+    watchKeys(this, this.#tools);
+    watchPointer(this.stage, (x, y) => this.setPivot(x, y));
+    watchWheel(this.stage);
   }
 
   #onFrame(): void {
     this.#frames++;
     const { stage } = this;
     if (stage.moments.firstPicture !== undefined) this.#firstPicture?.();
-    const recent = stage.frameTimes.slice(-20);
-    const mean = recent.reduce((sum, time) => sum + time, 0) / (recent.length || 1);
-    this.#status.update({
-      triangles: stage.drawnTriangles,
-      receivedBytes: this.#streamer.receivedBytes,
-      allBytes: stage.layers.reduce((sum, layer) => sum + layer.fileBytes, 0),
-      errorPx: stage.errorPx,
-      framesPerSecond: stage.isIdle || !recent.length ? null : 1000 / mean,
-    });
+    this.#status.update(figuresOf(stage, this.#streamer));
     const progress = byId("progress");
     if (stage.layers.length) progress.hidden = stage.isIdle;
-    if (stage.isIdle) this.#rememberSoon();
+    if (stage.isIdle) this.#address.writeSoon();
   }
 
   /** Without its first node an asset cannot be shown at all; without any other it is only coarser. */
@@ -293,60 +255,5 @@ export class App {
   #onRestored(): void {
     this.#lostStrip?.remove();
     note(WORDS.restored);
-  }
-
-  #makeViews(): void {
-    const nav = byId("views");
-    nav.hidden = this.scene.views.length === 0;
-    for (const view of this.scene.views) {
-      const button = make("button", { type: "button" }, view.name);
-      button.addEventListener("click", () => {
-        this.stage.setCamera(view.camera, true);
-        announce(view.name);
-      });
-      nav.append(button);
-    }
-  }
-
-  toggleLayer(index: number): void {
-    const { toggledLayers } = this.#state;
-    const isToggled = toggledLayers.includes(index);
-    this.change({
-      toggledLayers: isToggled
-        ? toggledLayers.filter((i) => i !== index)
-        : [...toggledLayers, index].sort((a, b) => a - b),
-    });
-  }
-
-  /** After a key turned the view: from where it is seen now, once it rests. */
-  #sayDirectionSoon(): void {
-    clearTimeout(this.#spokenTimer);
-    this.#spokenTimer = window.setTimeout(() => {
-      const words = this.stage.navigation.direction();
-      announce(directionWords(...words));
-    }, 700);
-  }
-
-  #readAddress(): void {
-    if (location.hash.length < 2) return;
-    const state = parseState(location.hash);
-    if (!state) {
-      note(WORDS.foreignLink);
-      return;
-    }
-    this.#state = state;
-    if (state.camera) this.stage.setCamera(state.camera);
-    this.#applyState();
-  }
-
-  #rememberSoon(): void {
-    clearTimeout(this.#addressTimer);
-    this.#addressTimer = window.setTimeout(() => this.#remember(), ADDRESS_PAUSE_MS);
-  }
-
-  #remember(): void {
-    if (!this.stage.layers.length) return;
-    const hash = `#${formatState(this.state)}`;
-    if (hash !== location.hash) history.replaceState(history.state, "", hash);
   }
 }

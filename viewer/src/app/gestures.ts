@@ -1,8 +1,9 @@
-/** Double-click and double-tap on the picture; a pinch takes hold of the surface between the fingers. */
+/** Double-click and double-tap on the picture; wheel and pinch take hold of the surface under them. */
 import type { Stage } from "../scene/stage";
 
 const DOUBLE_TAP_MS = 320;
 const DOUBLE_TAP_PX = 28;
+const WHEEL_PAUSE_MS = 250;
 
 export function watchPointer(stage: Stage, onDouble: (clientX: number, clientY: number) => void): void {
   const { canvas } = stage;
@@ -49,6 +50,17 @@ export function watchPointer(stage: Stage, onDouble: (clientX: number, clientY: 
     if (isSecond) onDouble(event.clientX, event.clientY);
   });
   addEventListener("pointercancel", (event) => fingers.delete(event.pointerId));
+}
+
+/** Wheel: bring the pivot to the surface under the cursor, once a gesture, before the camera hears of it. */
+export function watchWheel(stage: Stage): void {
+  let last = Number.NEGATIVE_INFINITY;
+  const onWheel = (event: WheelEvent): void => {
+    const isSameGesture = event.timeStamp - last < WHEEL_PAUSE_MS;
+    last = event.timeStamp;
+    if (!isSameGesture) stage.anchor(event.clientX, event.clientY);
+  };
+  stage.canvas.addEventListener("wheel", onWheel, { capture: true, passive: true });
 }
 
 function apart(a: PointerEvent, b: PointerEvent): number {

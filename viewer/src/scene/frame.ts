@@ -1,6 +1,5 @@
 /** The viewer's own frame: the scene around its middle, scaled to a fixed size, so that any unit works. */
-import type { Axis, Triple } from "../format/graph";
-import type { Asset } from "../stream/asset";
+import type { Axis, MultiresInfo, Triple } from "../format/graph";
 
 /** Radius of the whole scene here. Camera libraries compare with absolute thresholds; this is far above them. */
 export const SCENE_RADIUS = 1000;
@@ -12,17 +11,18 @@ export interface Frame {
   readonly scale: number;
 }
 
-/** A frame that holds the boxes of all assets. */
-export function frameOf(assets: readonly Asset[]): Frame {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const { info } of assets) {
-    for (let axis = 0; axis < 3; axis++) {
-      low[axis] = Math.min(low[axis]!, info.origin[axis]! + info.step * info.box[0][axis]!);
-      high[axis] = Math.max(high[axis]!, info.origin[axis]! + info.step * info.box[1][axis]!);
-    }
-  }
-  if (!assets.length) return { centre: [0, 0, 0], scale: 1 };
+/** Least and greatest corner, in the assets' unit and axes. */
+export type Box = readonly [Triple, Triple];
+
+export function boxOf({ origin, step, box }: Pick<MultiresInfo, "origin" | "step" | "box">): Box {
+  return box.map((corner) => corner.map((q, a) => origin[a]! + step * q)) as unknown as Box;
+}
+
+/** A frame that holds all boxes. */
+export function frameOf(boxes: readonly Box[]): Frame {
+  if (!boxes.length) return { centre: [0, 0, 0], scale: 1 };
+  const low = [0, 1, 2].map((a) => Math.min(...boxes.map((box) => box[0][a]!)));
+  const high = [0, 1, 2].map((a) => Math.max(...boxes.map((box) => box[1][a]!)));
   const centre = [0, 1, 2].map((a) => (low[a]! + high[a]!) / 2) as unknown as Triple;
   const radius = Math.hypot(...[0, 1, 2].map((a) => (high[a]! - low[a]!) / 2));
   return { centre, scale: SCENE_RADIUS / Math.max(radius, Number.MIN_VALUE * 1e20) };
@@ -38,16 +38,9 @@ export function fromFrame(frame: Frame, point: Triple): Triple {
 
 export const UP: Readonly<Record<Axis, Triple>> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
-/** Half the sides of the box of all assets, in their frame. */
-export function halfBoxOf(assets: readonly Asset[], frame: Frame): [number, number, number] {
-  const half: [number, number, number] = [0, 0, 0];
-  for (const { info } of assets) {
-    for (let axis = 0; axis < 3; axis++) {
-      for (const corner of info.box) {
-        const at = info.origin[axis]! + info.step * corner[axis]! - frame.centre[axis]!;
-        half[axis] = Math.max(half[axis]!, Math.abs(at) * frame.scale);
-      }
-    }
-  }
-  return half;
+/** Half the sides of the least box about the frame's middle that holds all boxes, in the frame. */
+export function halfBoxOf(boxes: readonly Box[], frame: Frame): Triple {
+  const reach = (a: number): number =>
+    Math.max(0, ...boxes.flatMap((box) => box.map((corner) => Math.abs(corner[a]! - frame.centre[a]!))));
+  return [0, 1, 2].map((a) => reach(a) * frame.scale) as unknown as Triple;
 }

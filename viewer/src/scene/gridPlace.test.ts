@@ -4,12 +4,13 @@ import { describe, expect, it } from "vitest";
 import type { MultiresInfo, Triple } from "../format/graph";
 import type { Asset } from "../stream/asset";
 import { packPatch } from "../stream/pack";
-import { type Frame, frameOf } from "./frame";
-import { Layer } from "./layer";
+import { boxOf, type Frame, frameOf } from "./frame";
 import { makeMaterials } from "./material";
+import { PatchLayer } from "./patchLayer";
 
 const { fround } = Math;
 const MATERIALS = makeMaterials();
+const SUPPLY = { isSettled: true, touch: () => {} };
 
 /** A surface of 9 x 9 vertices over the whole grid, as four patches that share borders of 5 and a corner. */
 const SIDE = 9;
@@ -36,7 +37,7 @@ function layerOf(
   bits: number,
   origin: Triple,
   step: number,
-): { layer: Layer; info: MultiresInfo; frame: Frame } {
+): { layer: PatchLayer; info: MultiresInfo; frame: Frame } {
   const most = mostOf(bits);
   const box: MultiresInfo["box"] = [
     [0, 0, 0],
@@ -51,8 +52,8 @@ function layerOf(
     errors: Float32Array.of(Infinity),
   };
   const asset = { info, graph, nodeBytes: new Float64Array(1) } as unknown as Asset;
-  const frame = frameOf([asset]);
-  return { layer: new Layer("a", asset, 0, frame, MATERIALS, 0), info, frame };
+  const frame = frameOf([boxOf(info)]);
+  return { layer: new PatchLayer("a", asset, 0, frame, MATERIALS, SUPPLY), info, frame };
 }
 
 /** The local positions of each patch, five by five. */
@@ -76,7 +77,7 @@ function seen(toEye: readonly number[], offset: Int32Array, local: Triple): Trip
 }
 
 /** For each grid point, where each of its patches draws it, and where it is in doubles. */
-function draw(layer: Layer, camera: PerspectiveCamera): Map<string, Triple[]> {
+function draw(layer: PatchLayer, camera: PerspectiveCamera): Map<string, Triple[]> {
   const places = new Map<string, Triple[]>();
   const { uniforms, solid } = MATERIALS;
   layer.follow(camera);

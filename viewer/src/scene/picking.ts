@@ -22,18 +22,10 @@ export class Picker {
    * The point under (x, y), or null over the background.
    *
    * @param x, y - Share of the picture's width and height, 0 to 1, from its top left corner.
-   * @param hidden - What is not to be hit.
+   * @param scene - All that is visible in it may be hit.
    */
-  pick(
-    x: number,
-    y: number,
-    scene: Scene,
-    camera: PerspectiveCamera,
-    hidden: readonly { visible: boolean }[],
-  ): Vector3 | null {
+  pick(x: number, y: number, scene: Scene, camera: PerspectiveCamera): Vector3 | null {
     const { renderer } = this;
-    const were = hidden.map((object) => object.visible);
-    for (const object of hidden) object.visible = false;
     const clear = renderer.getClearColor(new Color());
     const height = 4096; // of a picture that is only thought of: one pixel of it is drawn
     const width = height * camera.aspect; // three takes the aspect from here
@@ -50,9 +42,6 @@ export class Picker {
     renderer.setClearColor(clear, 1);
     scene.overrideMaterial = null;
     camera.clearViewOffset();
-    hidden.forEach((object, i) => {
-      object.visible = were[i]!;
-    });
     const share = bytes.reduce((sum, byte, i) => sum + byte / 255 / 255 ** i, 0);
     if (share <= 0) return null;
     return pointAt(x, y, share * camera.far, camera);

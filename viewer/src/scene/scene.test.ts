@@ -2,7 +2,8 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { defaultBudgets } from "./device";
 import { Fade } from "./fade";
-import { frameOf, fromFrame, SCENE_RADIUS, toFrame } from "./frame";
+import { boxOf, frameOf, fromFrame, SCENE_RADIUS, toFrame } from "./frame";
+import { FrameClock } from "./frameClock";
 import { LEAST_TRIANGLES, MotionBudget } from "./motionBudget";
 import { decode, encode, type Rgb, shade, shadeFast } from "./shading";
 
@@ -149,6 +150,35 @@ describe("motion budget", () => {
   });
 });
 
+describe("frame clock", () => {
+  it("tells intervals only of frames that followed one another", () => {
+    const clock = new FrameClock();
+    expect(clock.begin(1000)).toBeNull();
+    expect(clock.elapsed).toBe(16);
+    clock.isOn = true;
+    expect(clock.begin(1040)).toBe(40);
+    expect(clock.elapsed).toBe(40);
+    expect(clock.begin(1540)).toBe(500);
+    expect(clock.elapsed).toBe(100);
+    clock.isOn = false;
+    expect(clock.begin(60_000)).toBeNull();
+    expect(clock.elapsed).toBe(16);
+    expect(clock.times).toEqual([40, 500]);
+  });
+
+  it("takes the camera for moving until a moment after it stopped", () => {
+    const clock = new FrameClock();
+    clock.begin(1000);
+    expect(clock.isMoving).toBe(false);
+    clock.move();
+    expect(clock.isMoving).toBe(true);
+    clock.begin(1150);
+    expect(clock.isMoving).toBe(true);
+    clock.begin(1200);
+    expect(clock.isMoving).toBe(false);
+  });
+});
+
 describe("frame", () => {
   it("brings UTM coordinates to the middle and back without loss", () => {
     const origin = [500_000.25, 4_800_000.5, 12] as const;
@@ -159,8 +189,8 @@ describe("frame", () => {
         [0, 0, 0],
         [1000, 2000, 2000],
       ],
-    };
-    const frame = frameOf([{ info }] as unknown as Parameters<typeof frameOf>[0]);
+    } as const;
+    const frame = frameOf([boxOf(info)]);
     expect(frame.scale).toBeCloseTo(SCENE_RADIUS / 1.5);
     const point = [500_000.123456, 4_800_001.654321, 12.5] as const;
     fromFrame(frame, toFrame(frame, point)).forEach((x, a) => {

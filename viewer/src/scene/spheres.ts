@@ -1,6 +1,6 @@
-/** Bounding spheres of the finest nodes in the cut, as three circles each. */
+/** Bounding spheres of what is shown, as three circles each. */
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
-import { toFrame } from "./frame";
+import type { Triple } from "../format/graph";
 import type { Layer } from "./layer";
 
 const SIDES = 48;
@@ -20,19 +20,7 @@ export class SphereLines {
   update(layers: readonly Layer[]): void {
     const points: number[] = [];
     for (const layer of layers) {
-      const { graph, info } = layer.asset;
-      for (let node = 0; node < graph.nodes; node++) {
-        if (!isLeaf(layer, node)) continue;
-        const [x, y, z, radius] = graph.spheres.subarray(4 * node, 4 * node + 4) as unknown as [
-          number,
-          number,
-          number,
-          number,
-        ];
-        const { origin } = info;
-        const centre = toFrame(layer.frame, [x + origin[0], y + origin[1], z + origin[2]]);
-        addCircles(points, centre, radius * layer.frame.scale);
-      }
+      layer.forEachSphere((centre, radius) => addCircles(points, centre, radius));
     }
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry();
@@ -40,18 +28,7 @@ export class SphereLines {
   }
 }
 
-/** Whether the node is in the cut and nothing finer takes the place of any of its patches. */
-function isLeaf(layer: Layer, node: number): boolean {
-  const { firstPatch, finer } = layer.asset.graph;
-  const { expanded } = layer.selection;
-  if (!expanded[node]) return false;
-  for (let patch = firstPatch[node]!; patch < firstPatch[node + 1]!; patch++) {
-    if (finer[patch]! >= 0 && expanded[finer[patch]!]) return false;
-  }
-  return true;
-}
-
-function addCircles(points: number[], centre: readonly [number, number, number], radius: number): void {
+function addCircles(points: number[], centre: Triple, radius: number): void {
   for (let axis = 0; axis < 3; axis++) {
     for (let i = 0; i < SIDES; i++) {
       for (const step of [i, i + 1]) {
