@@ -58,7 +58,8 @@ def picture(page):
         content="#label, #bar, #toast, #alerts, #progress { visibility: hidden !important }"
     )
     page.evaluate("new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
-    encoded = base64.b64encode(page.screenshot()).decode()
+    # without animations: the picture comes in over 0.3 s, and may be settled before
+    encoded = base64.b64encode(page.screenshot(animations="disabled")).decode()
     style.evaluate("style => style.remove()")
     width, height, data = page.evaluate(PIXELS, encoded)
     pixels = np.frombuffer(base64.b64decode(data), dtype=np.uint8).reshape(height, width, 4)
