@@ -61,7 +61,7 @@ _HOMES = {
     "read": "foveal.scene.read",
     "render": "foveal.scene.render",
 }
-_ROOMS = ["base", "coding", "container", "lod", "mesh", "multires", "raster", "scene", "server"]
+_ROOMS = ["base", "coding", "container", "lod", "mesh", "multires", "raster", "refine", "scene", "server"]
 
 
 def __getattr__(name: str) -> Any:

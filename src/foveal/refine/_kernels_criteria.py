@@ -1,0 +1,80 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Whether a triangle is to be refined for a view: from its corners and limit normals alone.
+
+`view` (24,): the eye, pixels per radian, five frustum planes as (normal, offset). `limits` (3, 3): for
+front faces, silhouettes and back faces the most iterations, the edge in pixels that is short enough, the
+bend that is flat enough.
+"""
+
+import math
+
+from foveal.base.jit import kernel
+
+EYE, PIXELS, PLANES = 0, 3, 4
+
+THIRD = 1.0 / 3.0
+
+FRONT, SILHOUETTE, BACK = 0, 1, 2
+ITERATIONS, EDGE, BEND = 0, 1, 2
+
+
+#: A triangle is outside if a ball around its middle is, of this radius in longest edges: corners are at
+#: most 1 / sqrt(3) away, and as much again is left for where refinement moves it.
+BALL = 1.16
+
+
+@kernel
+def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, u, v, w):
+    """(is wanted, slack) of the triangle a, b, c of a level, at vertices u, v, w: whether to split it.
+
+    In the paper's order: frustum, then facing, then silhouette. A silhouette passes where the triangle and
+    the limit surface at its corner face different ways, or would if it bent as much again. Above level 0
+    only the first corner's normal is asked: those of the others may not be there yet.
+
+    The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
+    of the frustum has moved by `slack`.
+    """
+    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
+    if level >= most:
+        return False, math.inf
+    ux, uy, uz = bx - ax, by - ay, bz - az
+    vx, vy, vz = cx - ax, cy - ay, cz - az
+    wx, wy, wz = cx - bx, cy - by, cz - bz
+    uu, vv, ww = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz
+    longest = math.sqrt(max(uu, max(vv, ww)))
+    x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
+    dx, dy, dz = view[EYE] - x, view[EYE + 1] - y, view[EYE + 2] - z
+    away = math.sqrt(dx * dx + dy * dy + dz * dz)
+    slack = math.inf
+    for i in range(PLANES, PLANES + 20, 4):
+        inside = view[i] * x + view[i + 1] * y + view[i + 2] * z + view[i + 3] + BALL * longest
+        if inside < 0.0:
+            return False, trusted(-inside, away)
+        slack = min(slack, inside)
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    length = math.sqrt(nx * nx + ny * ny + nz * nz)
+    scale = 1.0 / length if length > 0.0 else 0.0
+    low = high = (nx * dx + ny * dy + nz * dz) * scale
+    least = 1.0
+    for i in range(3 if level == 0 else 1):
+        k = u if i == 0 else (v if i == 1 else w)
+        mx, my, mz = normals[k, 0], normals[k, 1], normals[k, 2]
+        facing = mx * dx + my * dy + mz * dz
+        low, high = min(low, facing), max(high, facing)
+        least = min(least, (mx * nx + my * ny + mz * nz) * scale)
+    front, back = 2.0 * low - high, low - 2.0 * high
+    kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
+    # Three times as quick as the eye at most.
+    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) * THIRD)
+    if level >= limits[kind, ITERATIONS] or 1.0 - least < limits[kind, BEND]:
+        return False, trusted(slack, away)
+    if limits[kind, EDGE] > 0.0:
+        reach = view[PIXELS] * longest / limits[kind, EDGE]
+        return reach > away, trusted(min(slack, abs(reach - away)), away)
+    return True, trusted(slack, away)
+
+
+@kernel
+def trusted(slack, away):
+    """A slack that rounding cannot have made too large."""
+    return 0.999 * slack - 1e-12 * away

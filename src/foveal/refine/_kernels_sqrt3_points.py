@@ -1,0 +1,141 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Where the vertices of uniform √3 subdivision are at every level, without subdividing.
+
+Of each vertex `points` holds three vectors, and `kinds` says which:
+
+* INSIDE: where it was born, its limit;
+* LATE (born in a face with a border edge; its ring grows on the step after): where it was born, its
+  limit, where it is one level later;
+* BORDER: where it was born, next - previous border vertex, previous - 2 itself + next.
+
+Based on: L. Kobbelt. √3-subdivision. SIGGRAPH 2000, with its border rule (every second step).
+"""
+
+import numpy as np
+
+from foveal.base.jit import kernel
+
+from ._kernels_sqrt3_layout import BORDER, LATE, NONE, generation, is_half
+
+THIRD = 1.0 / 3.0
+
+
+@kernel
+def position(net, v, level):
+    """(x, y, z) of vertex v on a level not below its birth."""
+    steps = level - net.births[v]
+    x, y, z = net.points[v, 0, 0], net.points[v, 0, 1], net.points[v, 0, 2]
+    if net.kinds[v] == BORDER:
+        share = 1.0
+        for _ in range(steps // 2):  # the border stands still on every other step
+            share *= 1.0 / 9.0
+        share = (1.0 - share) / 6.0
+        return (
+            x + share * net.points[v, 2, 0],
+            y + share * net.points[v, 2, 1],
+            z + share * net.points[v, 2, 2],
+        )
+    if steps == 0:
+        return x, y, z
+    if net.kinds[v] == LATE:
+        x, y, z = net.points[v, 2, 0], net.points[v, 2, 1], net.points[v, 2, 2]
+        steps -= 1
+    shrink = net.shrinks[v] if net.births[v] == 0 else THIRD
+    share = 1.0
+    for _ in range(steps):
+        share *= shrink
+    lx, ly, lz = net.points[v, 1, 0], net.points[v, 1, 1], net.points[v, 1, 2]
+    return lx + share * (x - lx), ly + share * (y - ly), lz + share * (z - lz)
+
+
+@kernel
+def border_neighbour(net, v, level, is_next):
+    """(x, y, z) of the border vertex after, or before, v on a level; v as in `position`."""
+    near, far = 1.0, 1.0
+    for _ in range((level - net.births[v]) // 2):
+        near *= THIRD
+        far *= 1.0 / 9.0
+    if not is_next:
+        near = -near
+    bend = (1.0 - far) / 6.0 + 0.5 * far
+    near *= 0.5
+    return (
+        net.points[v, 0, 0] + bend * net.points[v, 2, 0] + near * net.points[v, 1, 0],
+        net.points[v, 0, 1] + bend * net.points[v, 2, 1] + near * net.points[v, 1, 1],
+        net.points[v, 0, 2] + bend * net.points[v, 2, 2] + near * net.points[v, 1, 2],
+    )
+
+
+@kernel
+def near_point(net, a, b, level, is_first):
+    """The new point near a (is_first), or near b, of the border edge a, b that is cut on an odd level."""
+    ax, ay, az = position(net, a, level)
+    bx, by, bz = position(net, b, level)
+    if is_first:
+        x, y, z = border_neighbour(net, a, level, False)
+        return (
+            (x + 16.0 * ax + 10.0 * bx) / 27.0,
+            (y + 16.0 * ay + 10.0 * by) / 27.0,
+            (z + 16.0 * az + 10.0 * bz) / 27.0,
+        )
+    x, y, z = border_neighbour(net, b, level, True)
+    return (
+        (10.0 * ax + 16.0 * bx + x) / 27.0,
+        (10.0 * ay + 16.0 * by + y) / 27.0,
+        (10.0 * az + 16.0 * bz + z) / 27.0,
+    )
+
+
+@kernel
+def middle(net, f, level):
+    """(x, y, z): the barycentre of face f on its level; the face's first corner is first in the sum."""
+    ax, ay, az = position(net, net.faces[f, 0], level)
+    bx, by, bz = position(net, net.faces[f, 1], level)
+    cx, cy, cz = position(net, net.faces[f, 2], level)
+    return (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
+
+
+@kernel
+def virtual_apex(net, h):
+    """(x, y, z) of the vertex that would face half h, of generation k, once its mate is split.
+
+    The mate is a face of generation k, or would be: then the half of generation k - 1 that is there instead
+    has a virtual apex of its own, and so on. (A loop and not a recursion: Numba's cache crashes on those.)
+    """
+    last, n, depth = h, np.int64(net.beside[h, 0]), 0
+    while is_half(net.states[n]):
+        last, n = n, np.int64(net.beside[n, 0])
+        depth += 1
+    x, y, z = apex_in_face(net, last, n)
+    for i in range(depth - 1, -1, -1):
+        mate, before = np.int64(net.beside[h, 0]), h
+        for _ in range(i):
+            before, mate = mate, np.int64(net.beside[mate, 0])
+        x, y, z = apex_in_half(net, before, mate, x, y, z)
+    return x, y, z
+
+
+@kernel
+def apex_in_face(net, h, n):
+    """The virtual apex of half h, whose mate is the face n."""
+    level = generation(net.states[h])
+    if level % 2 == 1 and net.beside[n, 0] == NONE:  # it will be cut at its border, its edge 0
+        is_first = net.faces[n, 2] == net.faces[h, 1]  # beside its edge 2, which ends at the border's first
+        return near_point(net, net.faces[n, 0], net.faces[n, 1], level, is_first)
+    return middle(net, n, level)
+
+
+@kernel
+def apex_in_half(net, h, n, dx, dy, dz):
+    """The virtual apex of half h; in place of its mate is half n, whose own virtual apex is d.
+
+    The two faces that n is to be part of are (first vertex, d, new vertex), (second vertex, new vertex, d).
+    """
+    level = generation(net.states[h])
+    is_first = net.faces[n, 2] == net.faces[h, 1]  # beside its edge 2, from the new vertex to the first
+    v, c = net.faces[n, 0] if is_first else net.faces[n, 1], net.faces[n, 2]
+    vx, vy, vz = position(net, v, level)
+    cx, cy, cz = position(net, c, level)
+    if is_first:
+        return (vx + dx + cx) * THIRD, (vy + dy + cy) * THIRD, (vz + dz + cz) * THIRD
+    return (vx + cx + dx) * THIRD, (vy + cy + dy) * THIRD, (vz + cz + dz) * THIRD

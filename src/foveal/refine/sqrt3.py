@@ -1,0 +1,184 @@
+"""√3 refinement for a view: the mesh is a function of control mesh, camera and criteria alone.
+
+Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent refinement of 3D meshes using
+√3-subdivision (the criteria, the structure without edges or hierarchy); L. Kobbelt. √3-subdivision. SIGGRAPH
+2000 (the surface, adaptive refinement by forced mates).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.mesh.trimesh import TriMesh
+from foveal.view.camera import Camera
+
+from . import _kernels_sqrt3_base as base_kernels
+from . import _kernels_sqrt3_update as kernels
+from .cage import Cage
+from .criteria import MAX_LEVEL, Criteria, view_of
+from .net import Net
+
+__all__ = ["Sqrt3", "Update", "sqrt3"]
+
+#: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
+_FACES, _VERTICES = 1 << 16, 1 << 15
+
+
+@dataclass(frozen=True, slots=True)
+class Update:
+    """What an update did.
+
+    Attributes
+    ----------
+    faces, vertices : int
+        Of the mesh now.
+    split, undone : int
+        Faces that were split, and splits that were undone.
+    """
+
+    faces: int
+    vertices: int
+    split: int
+    undone: int
+
+
+class Sqrt3:
+    """A √3 refinement that follows a camera.
+
+    A face is split if it meets the criteria, or if a finer face beside it needs it to be; a vertex stands
+    where uniform √3 subdivision has it on the highest generation of its faces. Nothing reads the mesh of
+    the moment, so the result is the same whatever was looked at before.
+
+    Parameters
+    ----------
+    mesh : TriMesh
+        An oriented surface, open or closed.
+    name : str
+        What errors call it.
+
+    Raises
+    ------
+    FovealError
+        If the mesh is no oriented surface; the sentence names the edge or vertex.
+
+    Examples
+    --------
+    >>> from foveal.mesh.shapes import icosphere
+    >>> from foveal.view.camera import Camera
+    >>> refined = Sqrt3(icosphere(1))
+    >>> done = refined.update(Camera.around([-1, -1, -1], [1, 1, 1]))
+    >>> len(refined.mesh().faces) == done.faces > 80
+    True
+    """
+
+    def __init__(self, mesh: TriMesh, /, *, name: str = "mesh") -> None:
+        cage = Cage.of(mesh, name=name)
+        count, faces = len(cage.positions), len(cage.faces)
+        net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
+        net.counts[:2] = faces, count
+        net.faces[:faces], net.beside[:faces] = cage.faces, cage.beside
+        net.around[cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        base_kernels.base_points(
+            cage.positions,
+            cage.starts,
+            cage.ring,
+            cage.is_border,
+            net.points,
+            net.normals,
+            net.kinds,
+            net.shrinks,
+        )
+        self._net = net
+        low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
+        # All levels lie in the control mesh's convex hull, so in its box.
+        self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
+        self._drift = 1.0
+        self._view, self._limits = np.zeros(24), np.zeros((3, 3))
+
+    def update(self, camera: Camera, /, *, criteria: Criteria | None = None) -> Update:
+        """Bring the mesh to what `camera` sees, from where it is.
+
+        Parameters
+        ----------
+        camera : Camera
+            In the space of the mesh: of a placed model move the camera, inversely.
+        criteria : Criteria, optional
+        """
+        view, limits = view_of(camera), (criteria or Criteria()).limits()
+        self._move(view, limits)
+        net, drift = self._net, self._drift
+        count = int(net.counts[1])
+        order = np.empty(count, np.int32)
+        starts = np.empty(MAX_LEVEL + 3, np.int64)
+        order = order[: kernels.sort_by_birth(net.births, count, starts, order)]
+        kernels.review(net, order, view, limits, drift)
+        undone = int(kernels.coarsen(net, order))
+        before = self._vertices()
+        self._refine(view, limits)
+        vertices = self._vertices()
+        return Update(int(self._net.counts[0] - self._net.counts[2]), vertices, vertices - before, undone)
+
+    def _vertices(self) -> int:
+        return int(self._net.counts[1] - self._net.counts[3])
+
+    def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
+        """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
+        if not np.array_equal(limits, self._limits) or view[3] != self._view[3]:
+            self._net.face_until[:] = 0.0
+            self._net.vertex_until[:] = 0.0
+        else:
+            planes = (view[4:] - self._view[4:]).reshape(5, 4)
+            moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
+            self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
+        self._view, self._limits = view, limits
+
+    def _refine(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
+        net, drift = self._net, self._drift
+        queue, queued = np.empty(len(net.faces), np.int32), np.zeros(len(net.faces), np.bool_)
+        ends = np.array([0, kernels.waiting(net, drift, queue, queued)], np.int64)
+        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
+        while not kernels.refine(net, queue, ends, queued, chain, view, limits, drift):
+            self._net = net = net.grown(2 * len(net.faces), 2 * len(net.points))
+            rest = np.concatenate([queue[ends[0] :], queue[: ends[0]]])[: ends[1]]
+            queue = np.empty(len(net.faces), np.int32)
+            queue[: len(rest)] = rest
+            queued = np.concatenate([queued, np.zeros(len(queue) - len(queued), np.bool_)])
+            ends[0] = 0
+
+    def mesh(self) -> TriMesh:
+        """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
+        net = self._net
+        faces = net.faces[: net.counts[0]][net.states[: net.counts[0]] >= 0]
+        count = int(net.counts[1])
+        positions = np.empty((count, 3))
+        kernels.place(net, np.empty(count, np.int8), positions)
+        is_used = net.births[:count] >= 0
+        index = np.cumsum(is_used, dtype=np.int32) - 1
+        return TriMesh(positions[is_used], index[faces].astype(np.int32))
+
+    @property
+    def bytes_used(self) -> int:
+        """What the arrays take for the slots in use, all told."""
+        faces, vertices = int(self._net.counts[0]), int(self._net.counts[1])
+        return sum(
+            a.nbytes // len(a) * (faces if len(a) == len(self._net.faces) else min(vertices, len(a)))
+            for a in self._net
+        )
+
+
+def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None) -> TriMesh:
+    """A mesh refined for one view; see `Sqrt3`, which follows a camera.
+
+    Examples
+    --------
+    >>> from foveal.mesh.shapes import tetrahedron
+    >>> from foveal.refine import Region
+    >>> from foveal.view.camera import Camera
+    >>> everywhere = Criteria(Region(2), Region(2), Region(2))
+    >>> len(sqrt3(tetrahedron(), Camera.of([0, 0, 9], [0, 0, 0]), criteria=everywhere).faces)
+    36
+    """
+    refined = Sqrt3(mesh)
+    refined.update(camera, criteria=criteria)
+    return refined.mesh()

@@ -1,0 +1,146 @@
+"""√3 refinement: where it is complete it is Kobbelt's surface, and it depends on nothing but the view."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import KDTree
+
+import corpus
+from foveal.base.errors import FovealError
+from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain, tetrahedron, torus
+from foveal.mesh.trimesh import TriMesh
+from foveal.refine import Criteria, Region, Sqrt3
+from foveal.view.camera import Camera
+from refine.naive_sqrt3 import subdivided
+
+REFERENCE = Path(__file__).parents[3] / "shared" / "reference"
+
+SURFACES = {
+    "tetrahedron": tetrahedron,
+    "icosphere": lambda: icosphere(1),
+    "torus": lambda: torus(7, 5),
+    "bumpy": lambda: bumpy_sphere(2, seed=3),
+    "terrain": lambda: terrain(5),
+    "with_hole": corpus.MESHES["with_hole"],
+    "single_triangle": corpus.MESHES["single_triangle"],
+    "two_triangles": corpus.MESHES["two_triangles"],
+    "two_pieces": lambda: corpus.joined(icosphere(0), TriMesh(terrain(3).positions + 9, terrain(3).faces)),
+}
+
+
+def everywhere(level):
+    return Criteria(Region(level), Region(level), Region(level))
+
+
+def around(mesh, angle=0.0, height=0.3, closeness=1.0):
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    camera = Camera.around(low, high, direction=(math.sin(angle), height, math.cos(angle)))
+    eye = camera.target + (camera.position - camera.target) * closeness
+    return Camera.of(eye, camera.target)
+
+
+def canonical(mesh):
+    """The triangles' corners, bit for bit, whatever the order of triangles and which corner is first."""
+    corners = mesh.positions[mesh.faces]
+    keys = np.ascontiguousarray(corners).view("V24").reshape(-1, 3)
+    names = np.unique(keys.reshape(-1), return_inverse=True)[1].reshape(-1, 3)
+    first = names.argmin(axis=1)
+    rows = np.take_along_axis(corners, ((first[:, None] + np.arange(3)) % 3)[..., None], axis=1).reshape(
+        -1, 9
+    )
+    return rows[np.lexsort(rows.T)]
+
+
+def assert_same(a, b):
+    assert len(a.faces) == len(b.faces)
+    assert (canonical(a) == canonical(b)).all()
+
+
+def assert_surface(mesh, base):
+    """Conforming and oriented, with the border, holes and pieces of the control mesh."""
+    half_edges = np.concatenate([mesh.faces[:, [k, (k + 1) % 3]] for k in range(3)])
+    keys = half_edges[:, 0].astype(np.int64) * len(mesh.positions) + half_edges[:, 1]
+    assert len(np.unique(keys)) == len(keys)
+    edges = len(np.unique(np.sort(half_edges, axis=1), axis=0))
+    base_edges = len(
+        np.unique(
+            np.sort(np.concatenate([base.faces[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1), axis=0
+        )
+    )
+    assert len(mesh.positions) - edges + len(mesh.faces) == len(base.positions) - base_edges + len(base.faces)
+
+
+@pytest.mark.parametrize("level", range(5))
+@pytest.mark.parametrize("name", SURFACES)
+def test_everywhere_it_is_uniform_subdivision(name, level):
+    mesh = SURFACES[name]()
+    refined = Sqrt3(mesh)
+    refined.update(around(mesh), criteria=everywhere(level))
+    found = refined.mesh()
+    positions, faces = subdivided(mesh.positions, mesh.faces, level)
+    size = np.linalg.norm(np.ptp(mesh.positions, axis=0))
+    distance, index = KDTree(positions).query(found.positions)
+    assert distance.max() <= 1e-13 * size
+    turned = lambda rows: {tuple(np.roll(row, -np.argmin(row))) for row in rows.tolist()}  # noqa: E731
+    assert turned(index[found.faces]) == turned(faces)
+
+
+@pytest.mark.parametrize("path", sorted(REFERENCE.glob("sqrt3_cgal_*.npz")), ids=lambda p: p.stem)
+def test_everywhere_it_is_what_cgal_makes(path):
+    data = np.load(path, allow_pickle=False)
+    mesh = TriMesh.of(data["V0"], data["F0"])
+    refined = Sqrt3(mesh)
+    refined.update(around(mesh), criteria=everywhere(int(path.stem[-1])))
+    found = refined.mesh()
+    distance, index = KDTree(data["V"]).query(found.positions)
+    assert distance.max() <= 1e-12 * np.linalg.norm(np.ptp(data["V"], axis=0))
+    turned = lambda rows: {tuple(np.roll(row, -np.argmin(row))) for row in rows.tolist()}  # noqa: E731
+    assert turned(index[found.faces]) == turned(data["F"])
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", SURFACES)
+def test_the_mesh_depends_on_the_view_alone(name, seed):
+    mesh = SURFACES[name]()
+    rng = np.random.default_rng(seed)
+    refined = Sqrt3(mesh)
+    angle = rng.uniform(0, 6)
+    for _ in range(8):
+        angle += rng.choice([0.02, 0.3, 3.0])
+        camera = around(mesh, angle, rng.uniform(-0.5, 0.5), rng.choice([0.3, 0.8, 2.0]))
+        px = float(rng.choice([20, 40]))
+        criteria = Criteria(Region(4, px), Region(7, px / 2, 0.05), Region(int(rng.integers(0, 2))))
+        refined.update(camera, criteria=criteria)
+        fresh = Sqrt3(mesh)
+        fresh.update(camera, criteria=criteria)
+        assert_same(refined.mesh(), fresh.mesh())
+        assert_surface(refined.mesh(), mesh)
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_coarsened_it_is_the_control_mesh_bit_for_bit(name):
+    mesh = SURFACES[name]()
+    refined = Sqrt3(mesh)
+    refined.update(around(mesh), criteria=Criteria(Region(5, 5.0), Region(8, 3.0), Region(1)))
+    assert len(refined.mesh().faces) > len(mesh.faces)
+    refined.update(around(mesh), criteria=everywhere(0))
+    back = refined.mesh()
+    assert (back.positions == mesh.positions).all()
+    assert_same(back, mesh)
+
+
+@pytest.mark.parametrize(
+    ("faces", "words"),
+    [
+        ([[0, 1, 2], [0, 1, 3], [1, 0, 4]], "edge between vertices 0 and 1"),
+        ([[0, 1, 2], [0, 1, 3], [2, 3, 4]], "face opposite sides"),
+        ([[0, 1, 2], [0, 3, 4]], "at vertex 0 several fans"),
+        ([[0, 1, 1], [0, 3, 4]], "triangle 0 has the same vertex twice"),
+    ],
+)
+def test_what_is_no_surface_is_refused_by_name(faces, words):
+    positions = np.random.default_rng(0).normal(size=(5, 3))
+    with pytest.raises(FovealError, match=words):
+        Sqrt3(TriMesh.of(positions, faces), name="cage.obj")
