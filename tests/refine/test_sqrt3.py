@@ -148,3 +148,17 @@ def test_what_is_no_surface_is_refused_by_name(faces, words):
     positions = np.random.default_rng(0).normal(size=(5, 3))
     with pytest.raises(FovealError, match=words):
         Sqrt3(TriMesh.of(positions, faces), name="cage.obj")
+
+
+def test_an_update_says_what_it_did_and_memory_is_flat():
+    mesh = bumpy_sphere(2)
+    refined = Sqrt3(mesh)
+    first = refined.update(around(mesh), criteria=everywhere(4))
+    found = refined.mesh()
+    assert (
+        (first.faces, first.vertices) == (len(found.faces), len(found.positions)) == (81 * 320, 81 * 160 + 2)
+    )
+    assert (first.split, first.undone) == (first.vertices - len(mesh.positions), 0)
+    assert refined.bytes_used <= 200 * first.faces
+    assert refined.update(around(mesh), criteria=everywhere(4)).split == 0
+    assert refined.update(around(mesh), criteria=everywhere(0)).undone == first.split

@@ -5,6 +5,8 @@ import numpy as np
 
 from foveal.base.jit import kernel
 
+from ._kernels_surface import area_vector
+
 MISSING = -1
 
 
@@ -108,18 +110,7 @@ def vertex_normals(positions, faces, out):
     """Sum of the area vectors of the faces around each vertex, (n, 3) float64."""
     out[:] = 0.0
     for f in range(len(faces)):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy, uz = (
-            positions[b, 0] - positions[a, 0],
-            positions[b, 1] - positions[a, 1],
-            positions[b, 2] - positions[a, 2],
-        )
-        vx, vy, vz = (
-            positions[c, 0] - positions[a, 0],
-            positions[c, 1] - positions[a, 1],
-            positions[c, 2] - positions[a, 2],
-        )
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        x, y, z = area_vector(positions, faces, f)
         for k in range(3):
             v = faces[f, k]
             out[v, 0] += x

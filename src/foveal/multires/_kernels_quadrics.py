@@ -9,7 +9,7 @@ import math
 
 from foveal.base.jit import kernel
 
-from ._kernels_surface import BORDER
+from ._kernels_surface import BORDER, area_vector
 
 
 @kernel
@@ -46,18 +46,8 @@ def face_quadrics(positions, faces, twins, border_weight, quadrics):
     """
     quadrics[:] = 0.0
     for f in range(len(faces)):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy, uz = (
-            positions[b, 0] - positions[a, 0],
-            positions[b, 1] - positions[a, 1],
-            positions[b, 2] - positions[a, 2],
-        )
-        vx, vy, vz = (
-            positions[c, 0] - positions[a, 0],
-            positions[c, 1] - positions[a, 1],
-            positions[c, 2] - positions[a, 2],
-        )
-        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        a = faces[f, 0]
+        nx, ny, nz = area_vector(positions, faces, f)
         length = math.sqrt(nx * nx + ny * ny + nz * nz)
         if length > 0.0:
             nx, ny, nz = nx / length, ny / length, nz / length

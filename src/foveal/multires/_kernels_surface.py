@@ -121,8 +121,8 @@ def fan_exit(faces, f, v, is_left):
 
 
 @kernel
-def unit_normal(positions, faces, f):
-    """(x, y, z), zero for a face without area."""
+def area_vector(positions, faces, f):
+    """(x, y, z): along the normal of face f, twice its area long."""
     a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
     ux, uy, uz = (
         positions[b, 0] - positions[a, 0],
@@ -134,7 +134,13 @@ def unit_normal(positions, faces, f):
         positions[c, 1] - positions[a, 1],
         positions[c, 2] - positions[a, 2],
     )
-    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+
+
+@kernel
+def unit_normal(positions, faces, f):
+    """(x, y, z), zero for a face without area."""
+    x, y, z = area_vector(positions, faces, f)
     length = math.sqrt(x * x + y * y + z * z)
     scale = 1.0 / length if length > 0.0 else 0.0
     return x * scale, y * scale, z * scale
