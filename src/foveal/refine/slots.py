@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 __all__ = ["Placing", "Slots"]
 
 Placing = Literal["control", "limit"]
-"""Where vertices are shown: as subdivision has them on the level of their faces, or where they go in the limit."""
+"""Where vertices are shown: as subdivision has them on their faces' level, or where they go in the limit."""
 
 
 class Slots(NamedTuple):
