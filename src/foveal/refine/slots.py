@@ -5,7 +5,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Placing", "Slots"]
+from foveal.mesh.trimesh import TriMesh
+
+__all__ = ["Placing", "Slots", "mesh_of"]
 
 Placing = Literal["control", "limit"]
 """Where vertices are shown: as subdivision has them on their faces' level, or where they go in the limit."""
@@ -33,3 +35,12 @@ class Slots(NamedTuple):
     starts: NDArray[np.float64]
     levels: NDArray[np.uint8]
     colours: NDArray[np.uint8]
+
+
+def mesh_of(slots: Slots, /) -> TriMesh:
+    """The mesh in slots, without those that are free; vertices and faces in the order of their slots."""
+    faces = slots.faces[(slots.faces != 0).any(axis=1)]
+    is_used = np.zeros(len(slots.positions), np.bool_)
+    is_used[faces] = True
+    index = np.cumsum(is_used, dtype=np.int32) - 1
+    return TriMesh(slots.positions[is_used], index[faces].astype(np.int32))
