@@ -12,13 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
+from foveal.mesh.shapes import tetrahedron
 from foveal.mesh.trimesh import TriMesh
+from foveal.view.camera import Camera
 
+from .criteria import Criteria, Region
 from .pace import Pace, coarser, factor
 from .scheme import Scheme, refiner, slots_of
 from .wire import Buffers, Head, Request, buffers, message
 
-__all__ = ["MOST_TRIANGLES", "Session", "origin_of"]
+__all__ = ["MOST_TRIANGLES", "Session", "origin_of", "warm"]
 
 MOST_TRIANGLES = 2_000_000
 """The server's own limit: 400 MB of refinement and 60 MB for a first message."""
@@ -172,6 +175,17 @@ class Session:
         with self._lock:
             self._sequence, self._is_seen = head.sequence, False
         return sent
+
+
+def warm(scheme: Scheme, /) -> None:
+    """Compile what a session runs, or load it, so that no page waits for it: 40 s the first time."""
+    refined = refiner(tetrahedron(), scheme=scheme)
+    camera = Camera.of([3, 4, 5], [0, 0, 0])
+    for iterations in (3, 0):
+        region = Region(iterations, 1e-3, 1e-3)
+        refined.update(camera, criteria=Criteria(region, region, region))
+        for positions in ("control", "limit"):
+            slots_of(refined, positions=positions)
 
 
 def _is_leap(last: Request, request: Request) -> bool:

@@ -30,6 +30,8 @@ def view(
 ) -> Running:
     """Show a mesh, a `.fov` or a scene.json in the viewer, without waiting for it to be closed.
 
+    Control meshes (`scheme="sqrt3"`, or a `.fov` that holds one) are refined here, as the page's camera moves.
+
     Parameters
     ----------
     source : path, TriMesh or Scene
@@ -66,9 +68,29 @@ def view(
     """
     viewer_files(viewer)  # if it is missing, say so before minutes of building; so for the address
     refuse_address(host, port)
-    running = start(load(source, progress=progress, **options), host=host, port=port, viewer=viewer)
+    scene = load(source, progress=progress, **options)
+    _warm(scene, progress)
+    running = start(scene, host=host, port=port, viewer=viewer)
     if open_browser is None:
         open_browser = "ipykernel" not in sys.modules and can_open_browser()
     if open_browser:  # apart, as browsers of text do not return before they are closed
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
     return running
+
+
+def _warm(scene: Scene, progress: Progress) -> None:
+    """Have the kernels of live sessions ready, and broken control meshes refused, before any page is."""
+    layers = {layer.path: layer.refinement for layer in scene.layers if layer.refinement is not None}
+    if not layers:
+        return
+    from foveal.refine.session import Session, warm
+    from foveal.scene.cage_file import read_cage
+
+    schemes = {refinement.scheme for refinement in layers.values()}
+    with progress.stage("Preparing refinement", len(layers) + len(schemes)) as stage:
+        for path, refinement in layers.items():
+            Session(read_cage(path).mesh, scheme=refinement.scheme, name=str(path))
+            stage.advance()
+        for scheme in schemes:
+            warm(scheme)
+            stage.advance()
