@@ -24,6 +24,9 @@ __all__ = ["Sqrt3", "Update", "sqrt3"]
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
 _FACES, _VERTICES = 1 << 16, 1 << 15
 
+#: Of the mesh's size: how far the view may move before all is asked anew.
+_FAR = 1000.0
+
 
 @dataclass(frozen=True, slots=True)
 class Update:
@@ -77,23 +80,18 @@ class Sqrt3:
         count, faces = len(cage.positions), len(cage.faces)
         net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
         net.counts[:2] = faces, count
-        net.faces[:faces], net.beside[:faces] = cage.faces, cage.beside
-        net.around[cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
+        net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        net.vertices["triple"][:count] = net.vertices["pair"][:count] = -1
         base_kernels.base_points(
-            cage.positions,
-            cage.starts,
-            cage.ring,
-            cage.is_border,
-            net.points,
-            net.normals,
-            net.kinds,
-            net.shrinks,
+            cage.positions, cage.starts, cage.ring, cage.is_border, net.vertices, net.normals, net.shrinks
         )
         self._net = net
         low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
         # All levels lie in the control mesh's convex hull, so in its box.
         self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-        self._drift = 1.0
+        self._size = float(np.linalg.norm(high - low))
+        self._drift = self._size
         self._view, self._limits = np.zeros(24), np.zeros((3, 3))
 
     def update(self, camera: Camera, /, *, criteria: Criteria | None = None) -> Update:
@@ -108,54 +106,45 @@ class Sqrt3:
         view, limits = view_of(camera), (criteria or Criteria()).limits()
         self._move(view, limits)
         net, drift = self._net, self._drift
-        count = int(net.counts[1])
-        order = np.empty(count, np.int32)
+        order = np.empty(int(net.counts[1]), np.int32)
         starts = np.empty(MAX_LEVEL + 3, np.int64)
-        order = order[: kernels.sort_by_birth(net.births, count, starts, order)]
-        kernels.review(net, order, view, limits, drift)
-        undone = int(kernels.coarsen(net, order))
+        count = kernels.sort_by_birth(net.births, len(order), starts, order)
+        kernels.review(net, order, count, view, limits, drift)
+        undone = int(kernels.coarsen(net, order, count))
+        kernels.wake_expired(net, drift)
         before = self._vertices()
-        self._refine(view, limits)
+        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
+        while not kernels.refine(net, chain, view, limits, drift):
+            self._net = net = net.grown(2 * len(net.faces), 2 * len(net.vertices))
         vertices = self._vertices()
-        return Update(int(self._net.counts[0] - self._net.counts[2]), vertices, vertices - before, undone)
+        return Update(int(net.counts[0] - net.counts[2]), vertices, vertices - before, undone)
 
     def _vertices(self) -> int:
         return int(self._net.counts[1] - self._net.counts[3])
 
     def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
         """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
-        if not np.array_equal(limits, self._limits) or view[3] != self._view[3]:
-            self._net.face_until[:] = 0.0
-            self._net.vertex_until[:] = 0.0
-        else:
-            planes = (view[4:] - self._view[4:]).reshape(5, 4)
-            moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
-            self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
+        planes = (view[4:] - self._view[4:]).reshape(5, 4)
+        moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
+        self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
+        is_other = not np.array_equal(limits, self._limits) or view[3] != self._view[3]
+        # Kept in 32 bits, the drift has to begin anew before a slack is nothing beside it.
+        if is_other or self._drift > _FAR * self._size:
+            self._net.faces["until"] = self._net.vertices["until"] = 0.0
+            self._drift = self._size
         self._view, self._limits = view, limits
-
-    def _refine(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
-        net, drift = self._net, self._drift
-        queue, queued = np.empty(len(net.faces), np.int32), np.zeros(len(net.faces), np.bool_)
-        ends = np.array([0, kernels.waiting(net, drift, queue, queued)], np.int64)
-        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
-        while not kernels.refine(net, queue, ends, queued, chain, view, limits, drift):
-            self._net = net = net.grown(2 * len(net.faces), 2 * len(net.points))
-            rest = np.concatenate([queue[ends[0] :], queue[: ends[0]]])[: ends[1]]
-            queue = np.empty(len(net.faces), np.int32)
-            queue[: len(rest)] = rest
-            queued = np.concatenate([queued, np.zeros(len(queue) - len(queued), np.bool_)])
-            ends[0] = 0
 
     def mesh(self) -> TriMesh:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
         net = self._net
-        faces = net.faces[: net.counts[0]][net.states[: net.counts[0]] >= 0]
+        faces = net.faces[: net.counts[0]]
         count = int(net.counts[1])
-        positions = np.empty((count, 3))
-        kernels.place(net, np.empty(count, np.int8), positions)
+        levels, positions = np.empty(count, np.int8), np.empty((count, 3))
+        kernels.highest_levels(net, levels)
+        kernels.place(net, levels, positions)
         is_used = net.births[:count] >= 0
         index = np.cumsum(is_used, dtype=np.int32) - 1
-        return TriMesh(positions[is_used], index[faces].astype(np.int32))
+        return TriMesh(positions[is_used], index[faces["corners"][faces["state"] >= 0]].astype(np.int32))
 
     @property
     def bytes_used(self) -> int:
