@@ -1,0 +1,203 @@
+"""What a live refinement and a page tell each other, as spec/wire.md has it: requests, and slot buffers."""
+
+import json
+import math
+import struct
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.base.errors import FovealError
+from foveal.view.camera import Camera
+
+from .criteria import Criteria, Region
+from .slots import Placing, Slots
+
+__all__ = ["MAX_REQUEST_BYTES", "Buffers", "Head", "Request", "buffers", "message", "request_of"]
+
+MAX_REQUEST_BYTES = 16_384
+
+_HEADER = struct.Struct("<4sIIIIIIIff")
+_MAGIC = b"FVL\x01"
+_SETTLED, _LIMIT = 1, 2
+_COLOUR_SHIFT = 5
+
+#: Changes are looked for in blocks of so many words: a range costs three words itself.
+_BLOCK = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What a page wants, all of it.
+
+    Attributes
+    ----------
+    camera : Camera
+        In the control mesh's coordinates.
+    criteria : Criteria
+    budget : int
+        Triangles at most, or 0.
+    positions : "control" or "limit"
+    rate : float
+        Frames a second to be held, or 0.
+    drawn_ms : float
+        What the page took for its last frame.
+    seen : int
+        Sequence of the last message it applied, or 0.
+    wanted : tuple of float
+        All of the above but the last two, to be compared.
+    """
+
+    camera: Camera
+    criteria: Criteria
+    budget: int
+    positions: Placing
+    rate: float
+    drawn_ms: float
+    seen: int
+    wanted: tuple[Any, ...]
+
+
+def request_of(text: str, /) -> Request:
+    """Read a request.
+
+    Raises
+    ------
+    FovealError
+        In a sentence: too long, not JSON, a key that is missing or not what it should be.
+    """
+    if len(text) > MAX_REQUEST_BYTES:
+        raise FovealError(f"request: it is longer than {MAX_REQUEST_BYTES} bytes.")
+    try:
+        data = json.loads(text)
+        assert isinstance(data, dict)
+        camera, criteria = _camera(data["camera"]), _criteria(data["criteria"])
+        budget, rate = _number(data, "budget", 2**32), _number(data, "rate", 1e6)
+        drawn, seen = _number({"drawn_ms": 0, **data}, "drawn_ms", 1e9), _number(data, "seen", 2**32)
+        if data["positions"] not in ("control", "limit"):
+            raise FovealError('request: "positions" must be "control" or "limit".')
+        wanted = (camera[1], *criteria.limits().reshape(-1).tolist(), int(budget), data["positions"], rate)
+        return Request(camera[0], criteria, int(budget), data["positions"], rate, drawn, int(seen), wanted)
+    except FovealError:
+        raise
+    except (ValueError, TypeError, KeyError, AssertionError, RecursionError, OverflowError) as error:
+        what = f"{type(error).__name__}: {error}"
+        raise FovealError(f"request: it is no such object as spec/wire.md tells ({what:.200}).") from error
+
+
+def _number(data: dict[str, Any], key: str, most: float) -> float:
+    value = data[key]
+    if type(value) not in (int, float) or not 0 <= value <= most:
+        raise FovealError(f'request: "{key}" must be a number from 0 to {most:g}, got {value!r:.40}.')
+    return float(value)
+
+
+def _camera(data: dict[str, Any]) -> tuple[Camera, tuple[Any, ...]]:
+    camera = Camera.of(
+        data["position"],
+        data["target"],
+        up=data["up"],
+        field_of_view=float(data["fov"]),
+        width=data["width"],
+        height=data["height"],
+        near=float(data["near"]),
+        far=float(data["far"]),
+    )
+    triples = (*camera.position.tolist(), *camera.target.tolist(), *camera.up.tolist())
+    return camera, (*triples, camera.field_of_view, camera.width, camera.height, camera.near, camera.far)
+
+
+def _criteria(data: dict[str, Any]) -> Criteria:
+    regions = []
+    for name in ("front", "silhouette", "back"):
+        iterations = _number(data[name], "iterations", 30)
+        if iterations != int(iterations):
+            raise FovealError('request: "iterations" must be a whole number.')
+        edge_px, bend = _number(data[name], "edge_px", 1e9), _number(data[name], "bend", math.pi)
+        regions.append(Region(int(iterations), edge_px, bend))
+    return Criteria(*regions)
+
+
+class Buffers(NamedTuple):
+    """The four arrays of a message, each as (n,) uint32 words."""
+
+    faces: NDArray[np.uint32]
+    positions: NDArray[np.uint32]
+    starts: NDArray[np.uint32]
+    tags: NDArray[np.uint32]
+
+    @classmethod
+    def empty(cls) -> "Buffers":
+        """Of no slots."""
+        return cls._make(np.zeros(0, np.uint32) for _ in range(4))
+
+    def grown(self, other: "Buffers", /) -> "Buffers":
+        """The same with zeros behind, as long as those of `other`."""
+        longer = zip(self, other, strict=True)
+        return Buffers._make(np.append(a, np.zeros(len(b) - len(a), np.uint32)) for a, b in longer)
+
+
+def buffers(slots: Slots, origin: NDArray[np.float64], /) -> Buffers:
+    """What a page is to have, of copies."""
+    tags = np.zeros(-(-len(slots.faces) // 4) * 4, np.uint8)
+    np.left_shift(slots.colours, _COLOUR_SHIFT, out=tags[: len(slots.faces)])
+    tags[: len(slots.faces)] |= slots.levels
+    positions, starts = (
+        np.subtract(places, origin).astype("<f4").reshape(-1).view(np.uint32)
+        for places in (slots.positions, slots.starts)
+    )
+    faces = slots.faces.astype("<i4").reshape(-1).view(np.uint32)
+    return Buffers(faces, positions, starts, tags.view(np.uint32))
+
+
+class Head(NamedTuple):
+    """What a message tells beside the slots."""
+
+    sequence: int
+    base: int
+    is_settled: bool
+    is_limit: bool
+    triangles: int
+    milliseconds: float
+    threshold: float
+
+
+def message(head: Head, new: Buffers, old: Buffers, /) -> bytes:
+    """A message that brings a page from `old`, which may be shorter, to `new`."""
+    found = [_changes(words, was) for words, was in zip(new, old.grown(new), strict=True)]
+    table = np.concatenate(
+        [
+            np.column_stack([np.full(len(begins), number), 4 * begins, 4 * (ends - begins)])
+            for number, (begins, ends, _) in enumerate(found)
+        ]
+    ).astype("<u4")
+    header = _HEADER.pack(
+        _MAGIC,
+        head.sequence,
+        head.base,
+        _SETTLED * head.is_settled | _LIMIT * head.is_limit,
+        len(new.faces) // 3,
+        len(new.positions) // 3,
+        head.triangles,
+        len(table),
+        head.milliseconds,
+        head.threshold,
+    )
+    return b"".join([header, table.tobytes(), *(words for _, _, words in found)])
+
+
+def _changes(
+    words: NDArray[np.uint32], was: NDArray[np.uint32]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], bytes]:
+    """(begins, ends, their bytes) of what differs: whole blocks, a lone equal one between them kept in."""
+    rows = np.zeros((-(-len(words) // _BLOCK), _BLOCK), np.uint32)
+    rows.reshape(-1)[: len(words)] = words
+    is_changed = np.zeros(rows.shape, np.bool_)
+    np.not_equal(words, was, out=is_changed.reshape(-1)[: len(words)])
+    is_sent = np.concatenate([[False], is_changed.any(axis=1), [False]])
+    is_sent[1:-1] |= is_sent[:-2] & is_sent[2:]
+    edges = np.flatnonzero(np.diff(is_sent))
+    begins, ends = _BLOCK * edges[::2], np.minimum(_BLOCK * edges[1::2], len(words))
+    return begins, ends, rows[is_sent[1:-1]].reshape(-1)[: (ends - begins).sum()].astype("<u4").tobytes()
