@@ -21,6 +21,7 @@ from ._kernels_sqrt3_ask import ROUNDED, examine, examine_beyond, wants_triangle
 from ._kernels_sqrt3_layout import (
     FACES,
     FREE,
+    FREE_VERTICES,
     MEETS,
     NEEDED,
     NONE,
@@ -34,7 +35,6 @@ from ._kernels_sqrt3_layout import (
     half,
     is_half,
 )
-from ._kernels_sqrt3_points import position
 from ._kernels_sqrt3_slots import dequeue, enqueue
 from ._kernels_sqrt3_undo import unsplit
 
@@ -138,13 +138,13 @@ def split_as(net, f, is_own, until):
 
 
 @lean
-def refine(net, chain, view, limits, drift):
-    """Split what is wanted, beginning with the faces in the queue; whether it is done.
+def refine(net, most, chain, view, limits, drift):
+    """Split what is wanted, beginning with the faces in the queue, until there are `most` vertices.
 
-    Stops early when slots run out: the caller makes room and goes on. First in, first out: so most mates are
-    split when a half's turn comes, and need not be imagined (against last in: half the time).
+    Returns False when slots run out: the caller makes room and goes on. First in, first out: so most mates
+    are split when a half's turn comes, and need not be imagined (against last in: half the time).
     """
-    while net.counts[QUEUED] > 0:
+    while net.counts[QUEUED] > 0 and net.counts[VERTICES] - net.counts[FREE_VERTICES] < most:
         if net.counts[FACES] + ROOM > len(net.faces) or net.counts[VERTICES] + ROOM > len(net.vertices):
             return False
         f = dequeue(net)
@@ -182,25 +182,3 @@ def force(net, f, chain, view, limits, drift):
             is_own, until = examine(net, n, view, limits, drift)
             split_as(net, n, is_own, until)
             depth -= 1
-
-
-@lean
-def highest_levels(net, levels):
-    """levels[v]: the highest generation of the faces at v."""
-    for v in range(len(levels)):
-        levels[v] = net.births[v]
-    for f in range(net.counts[FACES]):
-        face = net.faces[f]
-        if face.state != FREE:
-            level = generation(face.state)
-            for k in range(3):
-                v = face.corners[k]
-                levels[v] = max(levels[v], level)
-
-
-@lean
-def place(net, levels, out):
-    """out[v]: the position of vertex v on levels[v]."""
-    for v in range(len(levels)):
-        if net.births[v] != FREE:
-            out[v, 0], out[v, 1], out[v, 2] = position(net, v, levels[v])

@@ -2,14 +2,10 @@
 
 from typing import Literal, Protocol, get_args
 
-import numpy as np
-
 from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from . import _kernels_sqrt3_update as kernels
-from ._kernels_sqrt3_layout import BORDER, UNMEASURED
 from .criteria import Criteria
 from .slots import Placing, Slots
 from .sqrt3 import Sqrt3, Update
@@ -29,6 +25,10 @@ class Refiner(Protocol):
 
     def mesh(self) -> TriMesh:
         """The mesh as it is."""
+        ...
+
+    def slots(self, *, positions: Placing = "control") -> Slots:
+        """The same slot by slot."""
         ...
 
 
@@ -70,26 +70,4 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
 
 def slots_of(refined: Refiner, /, *, positions: Placing = "control") -> Slots:
     """The slots of a refinement as it is; views where they can be, so valid until its next update."""
-    if hasattr(refined, "slots"):
-        slots: Slots = refined.slots(positions=positions)
-        return slots
-    assert isinstance(refined, Sqrt3)
-    net = refined._net
-    count, vertices = int(net.counts[0]), int(net.counts[1])
-    states = net.states[:count]
-    is_used = states >= 0
-    faces = np.where(is_used[:, None], net.faces[:count], 0)
-    places = net.points[:vertices, 0].copy()
-    if positions == "limit":
-        kinds, points = net.kinds[:vertices, None], net.points[:vertices]
-        ends = np.where(kinds == BORDER, points[:, 0] + points[:, 2] / 6, points[:, 1])
-        places = np.where(kinds == UNMEASURED, places, ends)
-    else:
-        kernels.place(net, np.empty(vertices, np.int8), places)
-    return Slots(
-        faces,
-        places,
-        net.points[:vertices, 0],
-        np.where(is_used, states >> 1, 0).astype(np.uint8),
-        np.zeros(count, np.uint8),
-    )
+    return refined.slots(positions=positions)

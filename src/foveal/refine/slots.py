@@ -33,3 +33,14 @@ class Slots(NamedTuple):
     starts: NDArray[np.float64]
     levels: NDArray[np.uint8]
     colours: NDArray[np.uint8]
+
+    @classmethod
+    def empty(cls, faces: int, vertices: int, /) -> "Slots":
+        """Room for so many faces, all free and green, and vertices."""
+        return cls(
+            np.zeros((faces, 3), np.int32),
+            np.zeros((vertices, 3)),
+            np.zeros((vertices, 3)),
+            np.zeros(faces, np.uint8),
+            np.zeros(faces, np.uint8),
+        )

@@ -14,10 +14,13 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from . import _kernels_sqrt3_base as base_kernels
+from . import _kernels_sqrt3_show as show
 from . import _kernels_sqrt3_update as kernels
+from ._kernels_sqrt3_layout import FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
 from .cage import Cage
 from .criteria import MAX_LEVEL, Criteria, view_of
 from .net import Net
+from .slots import Placing, Slots
 
 __all__ = ["Sqrt3", "Update", "sqrt3"]
 
@@ -38,12 +41,15 @@ class Update:
         Of the mesh now.
     split, undone : int
         Faces that were split, and splits that were undone.
+    is_done : bool
+        False if there was more to split than was allowed.
     """
 
     faces: int
     vertices: int
     split: int
     undone: int
+    is_done: bool = True
 
 
 class Sqrt3:
@@ -94,7 +100,9 @@ class Sqrt3:
         self._drift = self._size
         self._view, self._limits = np.zeros(24), np.zeros((3, 3))
 
-    def update(self, camera: Camera, /, *, criteria: Criteria | None = None) -> Update:
+    def update(
+        self, camera: Camera, /, *, criteria: Criteria | None = None, most_splits: int | None = None
+    ) -> Update:
         """Bring the mesh to what `camera` sees, from where it is.
 
         Parameters
@@ -102,25 +110,42 @@ class Sqrt3:
         camera : Camera
             In the space of the mesh: of a placed model move the camera, inversely.
         criteria : Criteria, optional
+        most_splits : int, optional
+            Stop after about so many, with a mesh that is whole but not yet as fine as wanted. Further updates
+            go on, and end in the very mesh that one without this limit makes.
         """
         view, limits = view_of(camera), (criteria or Criteria()).limits()
+        is_same = np.array_equal(view, self._view) and np.array_equal(limits, self._limits)
+        # Of the same view the rest is done: what was forced for faces not split yet is not to be undone.
+        undone = 0 if is_same else self._coarsen(view, limits)
+        before = self._vertices()
+        most = before + most_splits if most_splits is not None else np.iinfo(np.int64).max
+        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
+        while not kernels.refine(self._net, most, chain, view, limits, self._drift):
+            self._net = self._net.grown(2 * len(self._net.faces), 2 * len(self._net.vertices))
+        counts, vertices = self._net.counts, self._vertices()
+        return Update(
+            int(counts[FACES] - counts[FREE_FACES]),
+            vertices,
+            vertices - before,
+            undone,
+            bool(counts[QUEUED] == 0),
+        )
+
+    def _coarsen(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> int:
+        """Undo what a view does not need, and let faces wait that have to be asked."""
         self._move(view, limits)
         net, drift = self._net, self._drift
-        order = np.empty(int(net.counts[1]), np.int32)
+        order = np.empty(int(net.counts[VERTICES]), np.int32)
         starts = np.empty(MAX_LEVEL + 3, np.int64)
         count = kernels.sort_by_birth(net.births, len(order), starts, order)
         kernels.review(net, order, count, view, limits, drift)
         undone = int(kernels.coarsen(net, order, count))
         kernels.wake_expired(net, drift)
-        before = self._vertices()
-        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
-        while not kernels.refine(net, chain, view, limits, drift):
-            self._net = net = net.grown(2 * len(net.faces), 2 * len(net.vertices))
-        vertices = self._vertices()
-        return Update(int(net.counts[0] - net.counts[2]), vertices, vertices - before, undone)
+        return undone
 
     def _vertices(self) -> int:
-        return int(self._net.counts[1] - self._net.counts[3])
+        return int(self._net.counts[VERTICES] - self._net.counts[FREE_VERTICES])
 
     def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
         """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
@@ -134,22 +159,27 @@ class Sqrt3:
             self._drift = self._size
         self._view, self._limits = view, limits
 
-    def mesh(self) -> TriMesh:
+    def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
-        net = self._net
-        faces = net.faces[: net.counts[0]]
-        count = int(net.counts[1])
-        levels, positions = np.empty(count, np.int8), np.empty((count, 3))
-        kernels.highest_levels(net, levels)
-        kernels.place(net, levels, positions)
-        is_used = net.births[:count] >= 0
+        slots = self.slots(positions=positions)
+        is_face = self._net.faces["state"][: len(slots.faces)] >= 0
+        is_used = self._net.births[: len(slots.positions)] >= 0
         index = np.cumsum(is_used, dtype=np.int32) - 1
-        return TriMesh(positions[is_used], index[faces["corners"][faces["state"] >= 0]].astype(np.int32))
+        return TriMesh(slots.positions[is_used], index[slots.faces[is_face]].astype(np.int32))
+
+    def slots(self, *, positions: Placing = "control") -> Slots:
+        """The mesh as it is, slot by slot: what did not change since the last time is where it was."""
+        faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
+        slots = Slots.empty(faces, vertices)
+        highest = np.empty(vertices, np.int8)
+        show.show_faces(self._net, slots.faces, slots.levels, highest)
+        show.show_vertices(self._net, positions == "limit", highest, slots.positions, slots.starts)
+        return slots
 
     @property
     def bytes_used(self) -> int:
         """What the arrays take for the slots in use, all told."""
-        faces, vertices = int(self._net.counts[0]), int(self._net.counts[1])
+        faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
         return sum(
             a.nbytes // len(a) * (faces if len(a) == len(self._net.faces) else min(vertices, len(a)))
             for a in self._net
