@@ -20,6 +20,7 @@ from .check import check
 from .export import export
 from .info import info
 from .publish import publish
+from .refine import refine
 from .render import render
 from .result import plain
 from .view import view
@@ -80,7 +81,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for _command in (view, build, info, check, export, render, publish):
+for _command in (view, build, info, check, export, refine, render, publish):
     app.command()(_command)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import Telling, building, takes, telling
+from .groups import Telling, building, refining, takes, telling
 from .options import Force, Source
 from .output import refuse_output
 from .result import counted
@@ -16,11 +16,12 @@ from .result import counted
 if TYPE_CHECKING:
     from foveal.multires import BuildReport
     from foveal.scene.build import BuildOptions
+    from foveal.scene.refinement import RefineOptions
 
 __all__ = ["build"]
 
 
-@takes(building, telling)
+@takes(building, refining, telling)
 def build(
     file: Source,
     output: Annotated[
@@ -32,23 +33,31 @@ def build(
     force: Force = False,
     *,
     building: AbstractContextManager["BuildOptions"],
+    refining: "RefineOptions",
     telling: Telling,
 ) -> None:
     """Turn a mesh into one .fov that holds all resolutions.
 
     It is compressed, and read part by part. Every triangle comes back. The file appears when it is whole; an
-    interrupted build leaves nothing.
+    interrupted build leaves nothing. With --scheme it is kept as a control mesh instead, to be refined where
+    it is looked at.
     """
     import foveal
     from foveal.scene.build import title_of
+    from foveal.scene.cage_file import CageReport
 
     output = output or file.with_name(f"{title_of(file)}.fov")
     refuse_output(output, file, ".fov", force=force)
     begin = time.monotonic()
     with telling.progress() as progress, building as options:
-        report = foveal.build(file, output, progress=progress, **options)
+        chosen: BuildOptions = {**options, **refining}
+        report = foveal.build(file, output, progress=progress, **chosen)
     seconds = time.monotonic() - begin
     facts = {"file": str(output), **dataclasses.asdict(report)}
+    if isinstance(report, CageReport):
+        counts = f"{counted(report.triangles, 'triangle')}, {counted(report.vertices, 'vertex', 'vertices')}"
+        telling.result(facts, f"{output}: a control mesh of {counts}, {report.bytes:,} bytes")
+        return
     facts["seconds"] = {"total": seconds, **report.seconds}
     telling.result(facts, *_lines(output, report, seconds))
 

@@ -2,24 +2,49 @@
 
 import functools
 import inspect
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from foveal.base.errors import FovealError
 
-from .options import Bits, Dask, Debug, Json, Memory, Normals, Quiet, Step, Up, Verbose, Workers
+from .options import (
+    BackIterations,
+    Bend,
+    Bits,
+    Budget,
+    Dask,
+    Debug,
+    EdgePx,
+    Iterations,
+    Json,
+    Memory,
+    Normals,
+    Positions,
+    Quiet,
+    Scheme,
+    SilhouetteBend,
+    SilhouetteEdgePx,
+    SilhouetteIterations,
+    Step,
+    Up,
+    Verbose,
+    Workers,
+)
 from .report import Reporter, reporter
 from .result import print_json, print_lines
 
 if TYPE_CHECKING:
     from foveal.base.tasks import Executor
+    from foveal.refine import Criteria
     from foveal.scene.build import BuildOptions
+    from foveal.scene.refinement import RefineOptions
 
-__all__ = ["Telling", "building", "takes", "telling"]
+__all__ = ["Telling", "building", "refining", "takes", "telling"]
 
 
 def takes(*groups: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -115,6 +140,45 @@ def building(
             "workers": workers,
             "executor": executor,
         }
+
+
+def refining(
+    scheme: Scheme = None,
+    iterations: Iterations = None,
+    edge_px: EdgePx = None,
+    bend: Bend = None,
+    silhouette_iterations: SilhouetteIterations = None,
+    silhouette_edge_px: SilhouetteEdgePx = None,
+    silhouette_bend: SilhouetteBend = None,
+    back_iterations: BackIterations = None,
+    positions: Positions = None,
+    budget: Budget = None,
+) -> "RefineOptions":
+    """How a control mesh is refined; what is not chosen is as in `Criteria`, once anything of it is."""
+    silhouette = (silhouette_iterations, silhouette_edge_px, silhouette_bend)
+    regions = {"front": (iterations, edge_px, bend), "silhouette": silhouette, "back": (back_iterations,)}
+    names = ("iterations", "edge_px", "bend")
+    given: dict[str, dict[str, Any]] = {k: dict(zip(names, v, strict=False)) for k, v in regions.items()}
+    has_criteria = any(value is not None for region in given.values() for value in region.values())
+    return {
+        "scheme": scheme and scheme.value,
+        "criteria": _criteria(given) if has_criteria else None,
+        "positions": positions and positions.value,
+        "budget": budget,
+    }
+
+
+def _criteria(given: dict[str, dict[str, Any]]) -> "Criteria":
+    """The default criteria with what was given, angles in degrees, in place of their own."""
+    from foveal.refine import Criteria
+
+    criteria = Criteria()
+    for name, values in given.items():
+        chosen = {key: value for key, value in values.items() if value is not None}
+        if "bend" in chosen:
+            chosen["bend"] = math.radians(chosen["bend"])
+        criteria = replace(criteria, **{name: replace(getattr(criteria, name), **chosen)})
+    return criteria
 
 
 @contextmanager

@@ -25,7 +25,11 @@ def info(file: Source, up: Up = None, json: Json = False, debug: Debug = False) 
 def _scene(facts: dict[str, Any]) -> list[str]:
     lines = [f"{facts['file']}: scene {facts['title']!r}, {counted(len(facts['layers']), 'layer')}"]
     for layer in facts["layers"]:
-        lines += ["", f"{layer['name']}{'' if layer['visible'] else ' (hidden at first)'}", *_fov(layer)]
+        lines += [
+            "",
+            f"{layer['name']}{'' if layer['visible'] else ' (hidden at first)'}",
+            *_LINES[layer["kind"]](layer),
+        ]
     return lines
 
 
@@ -74,4 +78,12 @@ def _mesh(facts: dict[str, Any]) -> list[str]:
     return lines
 
 
-_LINES = {"scene": _scene, "multires": _fov, "mesh": _mesh}
+def _cage(facts: dict[str, Any]) -> list[str]:
+    lines = [*_common(facts), f"  scheme       {facts['scheme']}, {facts['positions']} positions"]
+    for name, region in facts["criteria"].items():
+        limits = f"{region['iterations']} iterations, edge {region['edge_px']:g} px"
+        lines.append(f"  {name:<12} {limits}, bend {region['bend_degrees']:.4g} degrees")
+    return lines
+
+
+_LINES = {"scene": _scene, "multires": _fov, "mesh": _mesh, "cage": _cage}

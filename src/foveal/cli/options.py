@@ -3,20 +3,32 @@
 import enum
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, cast
 
 import typer
 
 __all__ = [
+    "BackIterations",
+    "Bend",
     "Bits",
+    "Budget",
     "Dask",
     "Debug",
+    "EdgePx",
     "Force",
+    "Iterations",
     "Json",
     "Memory",
     "Normals",
     "NormalsKind",
+    "Positions",
+    "PositionsKind",
     "Quiet",
+    "Scheme",
+    "SchemeKind",
+    "SilhouetteBend",
+    "SilhouetteEdgePx",
+    "SilhouetteIterations",
     "Source",
     "Step",
     "Up",
@@ -60,6 +72,38 @@ class NormalsKind(enum.StrEnum):
 
     auto = "auto"
     none = "none"
+
+
+class SchemeKind(enum.StrEnum):
+    """By which scheme a control mesh is refined."""
+
+    sqrt3 = "sqrt3"
+    loop = "loop"
+    butterfly = "butterfly"
+
+
+class PositionsKind(enum.StrEnum):
+    """Where vertices of a refined mesh are."""
+
+    control = "control"
+    limit = "limit"
+
+
+def _iterations(what: str) -> typer.models.OptionInfo:
+    return cast(
+        typer.models.OptionInfo,
+        typer.Option(min=0, max=30, metavar="N", help=f"Refine {what} at most N times; more is finer."),
+    )
+
+
+def _edge_px(what: str) -> typer.models.OptionInfo:
+    what = f"{what}: an edge of so many pixels is short enough; with 0 none is. Larger is coarser."
+    return cast(typer.models.OptionInfo, typer.Option(min=0.0, max=1e9, metavar="PX", help=what))
+
+
+def _bend(what: str) -> typer.models.OptionInfo:
+    what = f"{what}: a bend by less than this is flat enough. Larger is coarser."
+    return cast(typer.models.OptionInfo, typer.Option(min=0.0, max=180.0, metavar="DEGREES", help=what))
 
 
 Source = Annotated[
@@ -122,6 +166,32 @@ Dask = Annotated[
     typer.Option(
         metavar="ADDRESS",
         help="Build on a Dask cluster, e.g. tcp://host:8786. Pays for very large inputs only.",
+    ),
+]
+Scheme = Annotated[
+    SchemeKind | None,
+    typer.Option(
+        case_sensitive=False,
+        help="Take the mesh as a control mesh, to be refined so where it is looked at.",
+    ),
+]
+Iterations = Annotated[int | None, _iterations("front faces")]
+EdgePx = Annotated[float | None, _edge_px("Front faces")]
+Bend = Annotated[float | None, _bend("Front faces")]
+SilhouetteIterations = Annotated[int | None, _iterations("silhouettes")]
+SilhouetteEdgePx = Annotated[float | None, _edge_px("Silhouettes")]
+SilhouetteBend = Annotated[float | None, _bend("Silhouettes")]
+BackIterations = Annotated[int | None, _iterations("back faces")]
+Positions = Annotated[
+    PositionsKind | None,
+    typer.Option(
+        case_sensitive=False, help="Vertices where their level has them, or where they go in the limit."
+    ),
+]
+Budget = Annotated[
+    int | None,
+    typer.Option(
+        min=0, max=2**32 - 1, metavar="N", help="Triangles at most, by a coarser threshold; 0 for no limit."
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace what is there already.")]

@@ -6,16 +6,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import Telling, building, takes, telling
+from .groups import Telling, building, refining, takes, telling
 from .options import Source
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
+    from foveal.scene.refinement import RefineOptions
 
 __all__ = ["publish"]
 
 
-@takes(building, telling)
+@takes(building, refining, telling)
 def publish(
     file: Source,
     output: Annotated[
@@ -24,6 +25,7 @@ def publish(
     force: Annotated[bool, typer.Option("--force", help="Replace what was published there before.")] = False,
     *,
     building: AbstractContextManager["BuildOptions"],
+    refining: "RefineOptions",
     telling: Telling,
 ) -> None:
     """Make a web site: static files for any server.
@@ -33,7 +35,8 @@ def publish(
     import foveal
 
     with telling.progress() as progress, building as options:
-        foveal.publish(file, output, force=force, progress=progress, **options)
+        chosen: BuildOptions = {**options, **refining}
+        foveal.publish(file, output, force=force, progress=progress, **chosen)
     files = [path for path in output.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)
     telling.result(

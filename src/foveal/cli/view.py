@@ -5,16 +5,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import Telling, building, takes, telling
+from .groups import Telling, building, refining, takes, telling
 from .options import Source
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
+    from foveal.scene.refinement import RefineOptions
 
 __all__ = ["view"]
 
 
-@takes(building, telling)
+@takes(building, refining, telling)
 def view(
     file: Source,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
@@ -30,22 +31,32 @@ def view(
             "--bind", metavar="ADDRESS", help="Address to serve on. 0.0.0.0 lets other machines in."
         ),
     ] = "127.0.0.1",
+    rate: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=1000.0,
+            metavar="FPS",
+            help="Frames a second to be held while a control mesh is refined; 0 for no such wish.",
+        ),
+    ] = None,
     *,
     building: AbstractContextManager["BuildOptions"],
+    refining: "RefineOptions",
     telling: Telling,
 ) -> None:
     """Show a mesh, a .fov or a scene.json in the browser.
 
     A mesh is built first, with a progress bar; the result is kept in your cache (10 GB, the least used go
-    first), so that the second time is at once. Ctrl-C ends the server.
+    first), so that the second time is at once. With --scheme it is a control mesh, and the server refines it
+    where it is looked at. Ctrl-C ends the server.
     """
     import foveal
 
     is_wanted = False if no_browser else None
     with telling.progress() as progress, building as options:
-        running = foveal.view(
-            file, host=host, port=port, open_browser=is_wanted, progress=progress, **options
-        )
+        chosen: BuildOptions = {**options, **refining, "rate": rate}
+        running = foveal.view(file, host=host, port=port, open_browser=is_wanted, progress=progress, **chosen)
     with running:
         telling.result({"url": running.url}, f"{running.url}   (Ctrl-C ends it)", brief=running.url)
         running.wait()

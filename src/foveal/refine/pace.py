@@ -7,13 +7,17 @@ rate is held by the budget that it takes, from what a triangle cost in the last 
 """
 
 import math
+import sys
 from collections import deque
 from dataclasses import replace
 from statistics import median
 
-from .criteria import Criteria, Region
+from foveal.view.camera import Camera
 
-__all__ = ["COARSEST", "Pace", "coarser", "factor"]
+from .criteria import Criteria, Region
+from .scheme import Refiner
+
+__all__ = ["COARSEST", "Pace", "coarser", "factor", "update_within"]
 
 # 2^(i / 8), written out: powers differ between machines in the last bit.
 _EIGHTHS = (
@@ -135,6 +139,29 @@ class Pace:
     def _steps(many: int, few: int) -> int:
         """Steps by which the triangles change so, as their edges do that fill the picture."""
         return int(_OCTAVE / 2 * math.log2(max(1, many) / max(1, few)))
+
+
+def update_within(refined: Refiner, camera: Camera, criteria: Criteria, budget: int, /) -> float:
+    """Refine for a view as finely as a budget of triangles allows; returns the factor that took.
+
+    Parameters
+    ----------
+    refined : Refiner
+        To be updated.
+    camera : Camera
+    criteria : Criteria
+        Are not exceeded.
+    budget : int
+        Triangles at most; 0 for no limit. A control mesh is never made coarser.
+    """
+    pace = Pace(budget=budget or sys.maxsize)
+    pace.begin(criteria, budget=budget, rate=0, is_leap=budget > 0)
+    while True:
+        pace.tell(refined.update(camera, criteria=coarser(criteria, pace.step)).faces)
+        if pace.is_settled:
+            return factor(pace.step)
+        if pace.is_fit:
+            pace.finer()
 
 
 def _afar(criteria: Criteria) -> int:

@@ -10,7 +10,7 @@ from .criteria import Criteria
 from .slots import Placing, Slots
 from .sqrt3 import Sqrt3, Update
 
-__all__ = ["SCHEMES", "Refiner", "Scheme", "refiner", "slots_of"]
+__all__ = ["SCHEMES", "Refiner", "Scheme", "refiner"]
 
 Scheme = Literal["sqrt3", "loop", "butterfly"]
 SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
@@ -23,7 +23,7 @@ class Refiner(Protocol):
         """Bring the mesh to what `camera` sees."""
         ...
 
-    def mesh(self) -> TriMesh:
+    def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is."""
         ...
 
@@ -66,8 +66,3 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
         raise FovealError(f"{name}: the scheme {scheme!r} is not there yet. Choose sqrt3.")
     made: Refiner = rgb(mesh, scheme=scheme, name=name)
     return made
-
-
-def slots_of(refined: Refiner, /, *, positions: Placing = "control") -> Slots:
-    """The slots of a refinement as it is; views where they can be, so valid until its next update."""
-    return refined.slots(positions=positions)

@@ -15,7 +15,7 @@ from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 
 from .pace import Pace, coarser, factor
-from .scheme import Scheme, refiner, slots_of
+from .scheme import Scheme, refiner
 from .wire import Buffers, Head, Request, buffers, message
 
 __all__ = ["MOST_TRIANGLES", "Session", "origin_of"]
@@ -25,7 +25,6 @@ MOST_TRIANGLES = 2_000_000
 
 _SLICE_S, _LEAP_S = 0.05, 0.4  # how long finer thresholds are tried before what there is is shown
 _LEAP = 0.25  # of the distance to the target: a camera that moved further is somewhere else
-_GROWTH = 4  # times the triangles for an iteration, at most
 
 
 def origin_of(mesh: TriMesh, /) -> NDArray[np.float64]:
@@ -153,10 +152,10 @@ class Session:
         criteria = request.criteria
         most = max(r.iterations for r in (criteria.front, criteria.silhouette, criteria.back))
         allowed = min(request.budget or MOST_TRIANGLES, MOST_TRIANGLES)
-        return self._faces * _GROWTH**most > _GROWTH * allowed
+        return self._faces << 2 * most > 4 * allowed  # an iteration is at most four triangles for one
 
     def _message(self, request: Request, milliseconds: float) -> bytes:
-        new = buffers(slots_of(self._refined, positions=request.positions), self.origin)
+        new = buffers(self._refined.slots(positions=request.positions), self.origin)
         is_anew = request.seen == 0 or len(new.faces) < len(self._sent.faces)
         self._base = 0 if is_anew else self._sequence
         head = Head(
@@ -180,5 +179,6 @@ def _is_leap(last: Request, request: Request) -> bool:
     if request.criteria != last.criteria:
         return True
     camera, before = request.camera, last.camera
+    away = float(np.linalg.norm(camera.position - camera.target))
     moved = np.linalg.norm(camera.position - before.position) + np.linalg.norm(camera.target - before.target)
-    return float(moved) > _LEAP * float(np.linalg.norm(camera.position - camera.target))
+    return float(moved) > _LEAP * away

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, overload
+from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from numpy.typing import ArrayLike
 
@@ -12,6 +12,9 @@ from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import Executor
 from foveal.mesh.trimesh import TriMesh
 
+from .cage_file import CageReport, is_cage, read_cage, write_cage
+from .refinement import Refinement, RefineOptions, chosen
+
 if TYPE_CHECKING:
     from foveal.multires import BuildReport
 
@@ -20,7 +23,7 @@ __all__ = ["BuildOptions", "Source", "build", "checked", "title_of", "up_of"]
 Source = PathLike | TriMesh
 
 
-class BuildOptions(TypedDict, total=False):
+class BuildOptions(RefineOptions, total=False):
     """What `build` takes, which explains each, and every verb that may have to build. None is the default."""
 
     bits: int | None
@@ -35,7 +38,7 @@ class BuildOptions(TypedDict, total=False):
 @overload
 def build(
     source: Source, output: PathLike, /, *, progress: Progress = ..., **options: Unpack[BuildOptions]
-) -> "BuildReport": ...
+) -> "BuildReport | CageReport": ...
 
 
 @overload
@@ -47,12 +50,12 @@ def build(
     *,
     progress: Progress = ...,
     **options: Unpack[BuildOptions],
-) -> "BuildReport": ...
+) -> "BuildReport | CageReport": ...
 
 
 def build(
     source: Any, /, *rest: Any, progress: Progress = SILENT, **options: Unpack[BuildOptions]
-) -> "BuildReport":
+) -> "BuildReport | CageReport":
     """Build a `.fov`: `build(path, output)`, `build(mesh, output)` or `build(positions, faces, output)`.
 
     Parameters
@@ -78,10 +81,14 @@ def build(
         By default local threads; anything like `concurrent.futures.Executor` serves, such as Dask's.
     workers : int, optional
         Number of local threads; by default one a processor.
+    scheme : "sqrt3", "loop" or "butterfly", optional
+        Keep the mesh as a control mesh, to be refined by this scheme where it is looked at.
+    criteria, positions, budget, rate
+        With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
     -------
-    BuildReport
+    BuildReport, or of a control mesh CageReport
         What was read, repaired and written.
 
     Raises
@@ -108,17 +115,48 @@ def build(
     if isinstance(mesh, Path):
         _refuse_source(mesh, output)
     refuse_unwritable(output)
-    chosen: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    up = chosen.pop("up", None)
+    refinement = chosen(options)
+    given = {k: v for k, v in options.items() if v is not None and k not in RefineOptions.__annotations__}
+    if refinement is not None:
+        return _build_cage(mesh, output, refinement, given, progress)
+    up: Any = given.pop("up", None)
     if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
     if isinstance(mesh, TriMesh):
         blocks = source_from_mesh(mesh, up=up or "y")
+    elif is_cage(mesh):
+        cage = read_cage(mesh)
+        blocks = source_from_mesh(cage.mesh, name=str(mesh), up=up or cage.up)
     elif mesh.suffix.lower() == ".fov":
         blocks = multires.source_of(mesh, up=up)
     else:
         blocks = open_source(mesh, up=up)
-    return multires.build(blocks, output, progress=progress, **chosen)
+    return multires.build(blocks, output, progress=progress, **cast(Any, given))
+
+
+def _build_cage(
+    mesh: Path | TriMesh, output: Path, refinement: Refinement, given: dict[str, Any], progress: Progress
+) -> CageReport:
+    """Keep a mesh as a control mesh."""
+    from foveal.base.jit import is_cold
+
+    from .read import read
+
+    name = "mesh" if isinstance(mesh, TriMesh) else str(mesh)
+    shaping = [option for option in ("bits", "step", "normals") if option in given]
+    if shaping:
+        raise FovealError(
+            f"{name}: a control mesh is kept as it is, so {' and '.join(shaping)} would change nothing. "
+            "Leave that out."
+        )
+    if is_cold():
+        progress.note("First run: the kernels are compiled, which takes about a minute, once.")
+    up = given.get("up") or (read_cage(mesh).up if isinstance(mesh, Path) and is_cage(mesh) else "y")
+    cage = mesh if isinstance(mesh, TriMesh) else read(mesh)
+    report = write_cage(cage, output, refinement=refinement, up=up, name=name)
+    if report.welded:
+        progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
+    return report
 
 
 def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Path | TriMesh, Path]:

@@ -8,6 +8,7 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
 from foveal.base.progress import SILENT, Progress
 
+from .cage_file import is_cage, read_cage
 from .read import read
 from .scene import read_scene
 
@@ -38,8 +39,8 @@ def check(
     Returns
     -------
     dict
-        JSON can hold it: `file`, `is_whole`, and what `multires.check` tells, or `layers` with one such
-        for each asset.
+        JSON can hold it: `file`, `is_whole`, and what `multires.check` tells (of a control mesh the counts
+        and `is_closed`), or `layers` with one such for each asset.
 
     Raises
     ------
@@ -63,6 +64,8 @@ def check(
         )
     from foveal import multires
 
+    if is_cage(path):
+        return {"file": str(path), "is_whole": True, **_cage(path, original)}
     if path.suffix.lower() == ".fov":
         mesh = None if original is None else read(original)
         report = multires.check(path, deep=deep, original=mesh, progress=progress)
@@ -73,3 +76,17 @@ def check(
         )
     layers = [check(layer.path, deep=deep, progress=progress) for layer in read_scene(path).layers]
     return {"file": str(path), "is_whole": True, "layers": layers}
+
+
+def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
+    """That a control mesh is the surface it should be."""
+    from foveal.refine.cage import Cage
+
+    if original is not None:
+        raise FovealError(f"{path}: a control mesh has no errors to be measured. Leave the original out.")
+    surface = Cage.of(read_cage(path).mesh, name=str(path))
+    return {
+        "triangles": len(surface.faces),
+        "vertices": len(surface.positions),
+        "is_closed": not bool(surface.is_border.any()),
+    }

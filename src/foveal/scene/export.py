@@ -12,10 +12,11 @@ from foveal.lod.graph import Graph
 from foveal.mesh.trimesh import TriMesh
 
 from .build import BuildOptions, Source, checked, up_of
-from .prepare import prepare
+from .cage_file import is_cage, read_cage
+from .prepare import prepare, refuse_shaping
 from .read import read
 
-__all__ = ["error_for_triangles", "export"]
+__all__ = ["error_for_triangles", "export", "refuse_mesh_output", "write_mesh"]
 
 _SUFFIXES = (".ply", ".glb")
 
@@ -72,10 +73,13 @@ def export(
     if isinstance(source, Path):
         _refuse_source(source)
     if output is not None:
-        _refuse_output(Path(output), source)
+        refuse_mesh_output(Path(output), source)
     up = up_of(options)
     shaped = error, triangles, *(options.get(option) for option in ("bits", "step", "normals"))
-    if _is_fov(source) or any(value is not None for value in shaped):
+    if isinstance(source, Path) and is_cage(source):
+        refuse_shaping(source, options, is_refined=True)
+        mesh, up = _whole(source, error, triangles)
+    elif _is_fov(source) or any(value is not None for value in shaped):
         with multires.open(prepare(source, progress=progress, **options)) as asset:
             if triangles is not None:
                 error = error_for_triangles(asset.graph, triangles, name=name)
@@ -83,8 +87,18 @@ def export(
     else:
         mesh = source if isinstance(source, TriMesh) else read(source)
     if output is not None:
-        _write(mesh, Path(output), up)
+        write_mesh(mesh, Path(output), up)
     return mesh
+
+
+def _whole(path: Path, error: float | None, triangles: int | None) -> tuple[TriMesh, str]:
+    """A control mesh and its axis; it is as coarse as it gets."""
+    cage = read_cage(path)
+    if error or (triangles is not None and triangles < len(cage.mesh.faces)):
+        raise FovealError(
+            f"{path}: a control mesh has no coarser levels. Export it whole, or finer by 'foveal refine'."
+        )
+    return cage.mesh, cage.up
 
 
 def _is_fov(source: Path | TriMesh) -> bool:
@@ -106,7 +120,7 @@ def _refuse_source(path: Path) -> None:
     refuse_missing(path)
 
 
-def _refuse_output(output: Path, source: Path | TriMesh) -> None:
+def refuse_mesh_output(output: Path, source: Path | TriMesh) -> None:
     if output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
     if isinstance(source, Path):
@@ -114,7 +128,7 @@ def _refuse_output(output: Path, source: Path | TriMesh) -> None:
     refuse_unwritable(output)
 
 
-def _write(mesh: TriMesh, output: Path, up: str) -> None:
+def write_mesh(mesh: TriMesh, output: Path, up: str) -> None:
     """In the format that the suffix says."""
     from foveal.mesh.io import write_glb, write_ply
 

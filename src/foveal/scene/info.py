@@ -17,6 +17,9 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
 from foveal.container import Container, open_container
 
+from .cage_file import KIND as CAGE
+from .cage_file import control_mesh
+from .refinement import refinement_json
 from .scene import read_scene
 
 if TYPE_CHECKING:
@@ -38,10 +41,11 @@ def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str,
     Returns
     -------
     dict
-        JSON can hold it. `kind` is "multires", "mesh" or "scene". For a `.fov`, `level_table` has a
+        JSON can hold it. `kind` is "multires", "cage", "mesh" or "scene". For a `.fov`, `level_table` has a
         row for each level, coarse to fine: the triangles that are shown when all up to it is expanded,
         their largest distance to the original (`error`, an upper bound), and the level's own bytes. For a
-        mesh, `topology` counts components, open and non-manifold edges, and what else is odd.
+        mesh, `topology` counts components, open and non-manifold edges, and what else is odd. For a control
+        mesh, `scheme`, `criteria` and so on say how it is meant to be refined.
 
     Raises
     ------
@@ -110,8 +114,27 @@ def _mesh_info(mesh: "TriMesh", path: Path | None, up: str | None) -> dict[str, 
     }
 
 
+def _cage_info(file: Container, size: int) -> dict[str, Any]:
+    cage = control_mesh(file)
+    return {
+        "file": file.name,
+        "kind": "cage",
+        "version": file.version,
+        "bytes": size,
+        "triangles": len(cage.mesh.faces),
+        "vertices": len(cage.mesh.positions),
+        "box": file.header["box"],
+        "up": cage.up,
+        "attributes": [],
+        **refinement_json(cage.refinement),
+        "generator": file.header.get("generator"),
+    }
+
+
 def _fov_info(path: Path) -> dict[str, Any]:
     with open_container(path) as file:
+        if file.kind == CAGE:
+            return _cage_info(file, path.stat().st_size)
         file.expect("multires", 1)
         header, size = file.header, path.stat().st_size
         _refuse_damage(header, str(path))

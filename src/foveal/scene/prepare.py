@@ -11,7 +11,7 @@ import time
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 import platformdirs
@@ -22,6 +22,8 @@ from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
 from .build import BuildOptions, Source, build, checked, title_of
+from .cage_file import is_cage
+from .refinement import RefineOptions, chosen
 from .scene import Scene, read_scene, scene_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
@@ -30,6 +32,7 @@ CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
 _SHAPING = ("bits", "step", "normals", "up")  # the options that change the bytes of a build
+_REFINING = ("criteria", "positions", "budget", "rate")  # and those that a scene can say of a control mesh
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20
 _DIGITS = 20
@@ -68,7 +71,8 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
         refuse_shaping(source, options)
         return read_scene(source)
     title = "mesh" if isinstance(source, TriMesh) else title_of(source)
-    return scene_of(prepare(source, progress=progress, **options), title=title)
+    path = prepare(source, progress=progress, **options)
+    return scene_of(path, title=title, options=cast(RefineOptions, options))
 
 
 def prepare(
@@ -101,15 +105,18 @@ def prepare(
     """
     _refuse_unknown(options)
     root = Path(folder) if folder is not None else cache_folder()
-    shaping = {name: options.get(name) for name in _SHAPING}
+    if not isinstance(source, TriMesh) and Path(source).suffix.lower() == ".fov":
+        refuse_missing(source)
+        refuse_shaping(source, options, is_refined=is_cage(source))
+        return Path(source)
+    if chosen(options) is not None:  # how else it is refined the scene says, so one file will do
+        options = cast(BuildOptions, {k: v for k, v in options.items() if k not in _REFINING})
+    shaping = {name: options.get(name) for name in (*_SHAPING, "scheme")}
     if isinstance(source, TriMesh):
         name = f"mesh-{_fingerprint_of_mesh(source, shaping)}"
     else:
         path = Path(source)
         refuse_missing(path)
-        if path.suffix.lower() == ".fov":
-            refuse_shaping(path, options)
-            return path
         name = f"{_stem(path)}-{_fingerprint(path, shaping)}"
     built = root / f"{name}.fov"
     if built.exists():
@@ -130,8 +137,8 @@ def prepare(
     return built
 
 
-def refuse_shaping(source: PathLike, options: BuildOptions, /) -> None:
-    """Say that options came too late, for what is built already.
+def refuse_shaping(source: PathLike, options: BuildOptions, /, *, is_refined: bool = False) -> None:
+    """Say that options came too late, for what is built already; how a control mesh is refined may change.
 
     Raises
     ------
@@ -139,10 +146,11 @@ def refuse_shaping(source: PathLike, options: BuildOptions, /) -> None:
         If one of those that change the bytes was chosen.
     """
     _refuse_unknown(options)
-    chosen = [name for name in _SHAPING if options.get(name) is not None]
-    if chosen:
+    names = _SHAPING if is_refined else (*_SHAPING, "scheme", *_REFINING)
+    late = [name for name in names if options.get(name) is not None]
+    if late:
         raise FovealError(
-            f"{source}: it is built already, so {' and '.join(chosen)} would change nothing. "
+            f"{source}: it is built already, so {' and '.join(late)} would change nothing. "
             "Build it anew with 'foveal build'."
         )
 
@@ -159,9 +167,10 @@ def _builder() -> str:
     """A name for the code that makes the bytes: 3 ms, and no room has to be imported for it."""
     package = Path(__file__).parents[1]
     state = hashlib.blake2b()
-    for room in ("base", "coding", "container", "mesh", "multires"):
-        for file in sorted((package / room).rglob("*.py")):
-            state.update(file.read_bytes())
+    rooms = (package / room for room in ("base", "coding", "container", "mesh", "multires"))
+    files = (file for room in rooms for file in sorted(room.rglob("*.py")))
+    for file in (*files, package / "scene" / "cage_file.py", package / "scene" / "refinement.py"):
+        state.update(file.read_bytes())
     return state.hexdigest()
 
 

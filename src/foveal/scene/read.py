@@ -6,11 +6,15 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
 from foveal.mesh.trimesh import TriMesh
 
+from .cage_file import is_cage, read_cage
+
 __all__ = ["read"]
 
 
 def read(path: PathLike, /) -> TriMesh:
     """Read a mesh file (PLY, STL, OBJ, OFF, GLB and more, also gzipped), or all triangles of a `.fov`.
+
+    Of a control mesh these are its own, not refined.
 
     Parameters
     ----------
@@ -43,6 +47,8 @@ def read(path: PathLike, /) -> TriMesh:
     if suffix == ".json":
         raise FovealError(f"{path}: a scene.json may hold several surfaces; read its files one by one.")
     if suffix == ".fov":
+        if is_cage(path):
+            return read_cage(path).mesh
         from foveal import multires
 
         with multires.open(path) as asset:

@@ -14,13 +14,14 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from .build import BuildOptions, Source, checked, up_of
+from .cage_file import read_cage
 from .prepare import load
 from .scene import Layer, Scene
 
 if TYPE_CHECKING:
     from foveal.raster import Picture
 
-__all__ = ["draw", "frame", "read_camera", "render"]
+__all__ = ["draw", "frame", "home", "read_camera", "render"]
 
 _SIZE = (1280, 720)
 _UP = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -95,7 +96,7 @@ def render(
     if not isinstance(source, Scene):
         source = checked(source)
     if isinstance(source, TriMesh):
-        eye = camera or _around([source.positions], up=up_of(options), size=size or _SIZE)
+        eye = camera or home([source.positions], up=up_of(options), size=size or _SIZE)
         picture = _opaque(source, eye, None, progress)
     else:
         scene = load(source, progress=progress, **options)
@@ -129,13 +130,18 @@ def frame(scene: Scene, /, *, size: tuple[int, int] = _SIZE) -> Camera:
 
     corners, up = [], "y"
     for layer in _visible(scene):
+        if layer.refinement is not None:
+            cage = read_cage(layer.path)
+            corners.append(cage.mesh.positions)
+            up = cage.up
+            continue
         with multires.open(layer.path) as asset:
             corners.append(asset.origin + asset.step * np.array(asset.header["box"], dtype=np.float64))
             up = asset.header.get("up", "y")
-    return _around(corners, up=up, size=size)
+    return home(corners, up=up, size=size)
 
 
-def _around(points: list[NDArray[np.float64]], /, *, up: str, size: tuple[int, int]) -> Camera:
+def home(points: list[NDArray[np.float64]], /, *, up: str, size: tuple[int, int] = _SIZE) -> Camera:
     """The viewer's home for the box of points, each (n, 3)."""
     return Camera.around(
         np.min([array.min(axis=0) for array in points], axis=0),
@@ -160,8 +166,14 @@ def draw(
     from foveal import multires
     from foveal.lod.select import cut
 
+    from .refine import refined
+
     meshes = []
     for layer in _visible(scene):
+        if layer.refinement is not None:
+            refinement = layer.refinement.chosen({"budget": triangles})
+            meshes.append(refined(read_cage(layer.path).mesh, refinement, camera, name=str(layer.path)))
+            continue
         with multires.open(layer.path) as asset:
             seen = cut(
                 asset.graph, _moved(camera, -asset.origin), error_px=error_px, triangle_budget=triangles

@@ -6,9 +6,11 @@
      "views": [{"name": "front", "camera": {"position": [0, 0, 5], "target": [0, 0, 0]}}],
      "background": "#20242a"}
 
-`title`, `visible`, `views` and `background` may be left out. An asset is a path relative to the folder of
-the scene.json, with forward slashes, that does not leave it: a scene that came from elsewhere must not
-make a server give out other files. Keys that are not known are ignored, for what later versions add.
+`title`, `visible`, `views` and `background` may be left out. A layer of a control mesh may have what
+`refinement.py` keeps (`scheme`, `criteria`, `positions`, `budget`, `rate`), in place of what its file says.
+An asset is a path relative to the folder of the scene.json, with forward slashes, that does not leave it: a
+scene that came from elsewhere must not make a server give out other files. Keys that are not known are
+ignored, for what later versions add.
 """
 
 import json
@@ -22,6 +24,10 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, read_json, whole_file
 from foveal.container import open_container
 from foveal.view.camera import Camera
+
+from .cage_file import KIND as CAGE
+from .cage_file import control_mesh
+from .refinement import Refinement, RefineOptions, refinement_json, refinement_of
 
 __all__ = ["Layer", "Scene", "View", "asset_names", "read_scene", "scene_json", "scene_of", "write_scene"]
 
@@ -43,11 +49,14 @@ class Layer:
         The `.fov`.
     is_visible : bool
         Whether it is shown at first.
+    refinement : Refinement or None
+        Of a control mesh, how it is refined; None for any other asset.
     """
 
     name: str
     path: Path
     is_visible: bool = True
+    refinement: Refinement | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +89,17 @@ class Scene:
     background: str | None = None
 
 
-def scene_of(path: PathLike, /, *, title: str | None = None) -> Scene:
+def scene_of(path: PathLike, /, *, title: str | None = None, options: RefineOptions | None = None) -> Scene:
     """A scene of one layer from one `.fov`.
+
+    Parameters
+    ----------
+    path
+        The file.
+    title : str, optional
+        By default its name.
+    options : RefineOptions, optional
+        Of a control mesh, what is chosen in place of what its file says.
 
     Raises
     ------
@@ -89,10 +107,20 @@ def scene_of(path: PathLike, /, *, title: str | None = None) -> Scene:
         If there is no such file or it is not a `.fov` that this version reads.
     """
     path = Path(path)
-    with open_container(path) as file:
-        file.expect("multires", 1)
+    refinement = _refinement(path)
+    if refinement is not None:
+        refinement = refinement.chosen(options or {})
     name = _UNSAYABLE.sub("_", title or path.stem)  # file systems allow what scene.json does not
-    return Scene(name, (Layer(name, path.resolve()),))
+    return Scene(name, (Layer(name, path.resolve(), refinement=refinement),))
+
+
+def _refinement(path: Path) -> Refinement | None:
+    """What a control mesh's file says of its refinement; None for patches; nothing else is shown."""
+    with open_container(path) as file:
+        if file.kind == CAGE:
+            return control_mesh(file).refinement
+        file.expect("multires", 1)
+        return None
 
 
 def read_scene(path: PathLike, /) -> Scene:
@@ -152,9 +180,10 @@ def _layer(data: Any, where: str, path: Path) -> Layer:
     is_visible = data.get("visible", True)
     if not isinstance(is_visible, bool):
         raise FovealError(f'{path}: "visible" of {where} must be true or false, got {is_visible!r:.60}.')
-    with open_container(asset) as file:
-        file.expect("multires", 1)
-    return Layer(_text(data, "name", asset.stem, path), asset, is_visible)
+    refinement = _refinement(asset)
+    if refinement is not None:
+        refinement = refinement_of(data, f"{path}: {where}", default=refinement)
+    return Layer(_text(data, "name", asset.stem, path), asset, is_visible, refinement)
 
 
 def _contained(asset: str, where: str, path: Path) -> Path:
@@ -209,13 +238,21 @@ def asset_names(scene: Scene, /) -> dict[Path, str]:
     return names
 
 
-def scene_json(scene: Scene, addresses: Mapping[Path, str], /) -> bytes:
-    """The scene.json's bytes, with each asset at its address."""
+def scene_json(
+    scene: Scene, addresses: Mapping[Path, str], /, *, live: Mapping[Path, str] | None = None
+) -> bytes:
+    """The scene.json's bytes, with the address of each asset and, if a server refines it, of that session."""
     data: dict[str, Any] = {
         "version": VERSION,
         "title": scene.title,
         "layers": [
-            {"name": layer.name, "asset": addresses[layer.path], "visible": layer.is_visible}
+            {
+                "name": layer.name,
+                "asset": addresses[layer.path],
+                "visible": layer.is_visible,
+                **(refinement_json(layer.refinement) if layer.refinement else {}),
+                **({"live": live[layer.path]} if layer.refinement and live else {}),
+            }
             for layer in scene.layers
         ],
         "views": [{"name": view.name, "camera": view.camera.to_json()} for view in scene.views],

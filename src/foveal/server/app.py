@@ -1,7 +1,6 @@
-"""The ASGI app: the viewer, scene.json, and the scene's files by range.
+"""The ASGI app: the viewer, scene.json, the scene's files by range, and live sessions of its control meshes.
 
-Live sessions (a refinement that follows the camera) will join the routes here, with a token for every
-write; what is served now can only be read.
+Files can only be read; who wants a session needs the token that only scene.json tells, new in each run.
 """
 
 import re
@@ -16,6 +15,7 @@ from foveal.scene.viewer_files import viewer_files
 from .asgi import Receive, Scope, Send, say
 from .data_file import DataFile
 from .guard import LOCAL_HOSTS, Guard
+from .live import Live
 from .text_file import TextFile
 
 __all__ = ["create_app"]
@@ -33,8 +33,9 @@ def create_app(
 ) -> Guard:
     """An ASGI app that shows `scene` in the viewer.
 
-    It gives out exactly the viewer's files at ``/``, ``/scene.json``, and each asset of the scene at
-    ``/data/<name>.fov``; nothing is looked up on disk by what a request says.
+    It gives out exactly the viewer's files at ``/``, ``/scene.json``, each asset of the scene at
+    ``/data/<name>.fov``, and for each control mesh a WebSocket at ``/live/<name>.fov``; nothing is looked up
+    on disk by what a request says.
 
     Parameters
     ----------
@@ -51,7 +52,10 @@ def create_app(
         If the viewer is not built.
     """
     names = asset_names(scene)
-    text = scene_json(scene, {path: f"data/{name}" for path, name in names.items()})
+    sessions = {f"/live/{names[layer.path]}": layer for layer in scene.layers if layer.refinement}
+    live = Live(sessions)
+    addresses = {layer.path: f"{address[1:]}?token={live.token}" for address, layer in sessions.items()}
+    text = scene_json(scene, {path: f"data/{name}" for path, name in names.items()}, live=addresses)
     data = {f"/data/{name}": DataFile(path) for path, name in names.items()}
     files = viewer_files(viewer)
     routes = [
@@ -65,6 +69,9 @@ def create_app(
     router = Router(routes, redirect_slashes=False, default=_not_found)
 
     async def app(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "websocket":
+            await live(scope, receive, send)
+            return
         # Ranges go ahead of the router, which tries one route after the other.
         asset = data.get(scope["path"]) if scope["type"] == "http" else None
         await (asset or router)(scope, receive, send)

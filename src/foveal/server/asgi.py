@@ -3,7 +3,7 @@
 from collections.abc import Awaitable, Callable, MutableMapping
 from typing import Any
 
-__all__ = ["EVERY_ANSWER", "App", "Headers", "Receive", "Scope", "Send", "finish", "say", "start"]
+__all__ = ["EVERY_ANSWER", "App", "Headers", "Receive", "Scope", "Send", "finish", "refuse", "say", "start"]
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -26,6 +26,11 @@ async def start(send: Send, status: int, headers: Headers, /) -> None:
 async def finish(send: Send, body: bytes = b"", /) -> None:
     """Send the whole body, or the last of it."""
     await send({"type": "http.response.body", "body": body})
+
+
+async def refuse(send: Send, /) -> None:
+    """Answer a WebSocket that was not accepted yet: closing it so is a 403."""
+    await send({"type": "websocket.close", "code": 1008})
 
 
 async def say(send: Send, status: int, sentence: str, headers: Headers | None = None, /) -> None:

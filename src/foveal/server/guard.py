@@ -4,7 +4,7 @@ import ipaddress
 import re
 from collections.abc import Collection
 
-from .asgi import App, Receive, Scope, Send, say
+from .asgi import App, Receive, Scope, Send, refuse, say
 
 __all__ = ["LOCAL_HOSTS", "Guard"]
 
@@ -14,11 +14,12 @@ _HOST = re.compile(r"(\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::[0-9]{0,5})?")
 
 
 class Guard:
-    """Lets through GET and HEAD for a host that is ours.
+    """Lets through GET and HEAD, and WebSockets of our own pages, for a host that is ours.
 
     Without the check of Host any page on the web could point a name of its own at 127.0.0.1 and read
     what is served here (DNS rebinding). That needs a name, so a server bound to all interfaces accepts
-    every address written in numbers.
+    every address written in numbers. Browsers let any page open a WebSocket to anywhere, but say which page
+    it is: its Origin must be this server, by the very name that it is asked by.
 
     Parameters
     ----------
@@ -41,16 +42,17 @@ class Guard:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        if scope["type"] != "http":  # no live sessions yet: closing before accepting answers 403
-            await send({"type": "websocket.close", "code": 1008})
-            return
-
         hosts = [value for name, value in scope["headers"] if name == b"host"]
         if len(hosts) != 1 or hosts[0] not in self._known:
             refusal = self._refusal(hosts)
             if refusal is not None:
-                await say(send, *refusal)
+                await (say(send, *refusal) if scope["type"] == "http" else refuse(send))
                 return
+        if scope["type"] == "websocket":
+            origins = [value for name, value in scope["headers"] if name == b"origin"]
+            is_ours = origins in ([b"http://" + hosts[0]], [b"https://" + hosts[0]])
+            await (self._app(scope, receive, send) if is_ours else refuse(send))
+            return
         if scope["method"] not in ("GET", "HEAD"):
             await say(send, 405, "Only GET and HEAD are served here.", [(b"allow", b"GET, HEAD")])
             return

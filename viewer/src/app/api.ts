@@ -1,8 +1,11 @@
 /** `window.foveal`: for tests, and for pages that embed the viewer. */
 import type { CameraState } from "../scene/navigation";
+import type { RefinementFigures } from "../stream/refinement";
 import type { State } from "./state";
 
 export interface Stats {
+  /** Of what is refined where it is looked at, or null. */
+  readonly refinement: RefinementFigures | null;
   readonly triangles: number;
   readonly patches: number;
   readonly receivedBytes: number;

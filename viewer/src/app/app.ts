@@ -2,8 +2,9 @@
 import type { Problem } from "../format/problem";
 import { defaultBudgets, deviceHints } from "../scene/device";
 import { UP } from "../scene/frame";
-import { Stage } from "../scene/stage";
+import { type Part, Stage } from "../scene/stage";
 import type { Asset } from "../stream/asset";
+import type { Cage } from "../stream/cage";
 import type { DecoderPool } from "../stream/pool";
 import { Streamer } from "../stream/streamer";
 import { Address } from "./address";
@@ -15,11 +16,13 @@ import { watchKeys } from "./keyboard";
 import { showViews } from "./namedViews";
 import { announce, note, showWarning } from "./notices";
 import { settingsOf } from "./ownSettings";
+import type { RefinementControl } from "./refinement";
 import type { SceneFile } from "./sceneFile";
 import { makeSettings } from "./settings";
 import { copyLink, savePicture } from "./sharing";
+import type { Sheet } from "./sheet";
 import { INITIAL, type State } from "./state";
-import { figuresOf, statsOf } from "./stats";
+import { figuresOf, statsOf, sumOf } from "./stats";
 import { StatusLine } from "./statusLine";
 import { applyTheme, backgroundOf, onDeviceTheme, resolveTheme } from "./theme";
 import { type Tool, Toolbar } from "./toolbar";
@@ -35,7 +38,9 @@ export class App {
   readonly #toolbar: Toolbar;
   readonly #tools: readonly Tool[];
   readonly #help = makeHelp();
-  #settings: HTMLDialogElement | undefined;
+  /** Of layers that are refined where they are looked at, if there are any. */
+  refinement: RefinementControl | undefined;
+  #settings: Sheet | undefined;
   #state: State = INITIAL;
   readonly #address = new Address(
     () => (this.stage.layers.length ? this.state : null),
@@ -90,25 +95,34 @@ export class App {
     return this.#help;
   }
 
-  /** Show the scene's assets; settles when all are opened. */
-  async open(opening: Promise<readonly Asset[]>): Promise<void> {
-    const assets = await opening;
-    const { layers } = this.scene;
-    const parts = assets.map((asset, i) => ({
-      asset,
-      name: layers[i]!.name,
-      isVisible: layers[i]!.isVisible,
-    }));
+  /** Show the scene's layers; settles when all are opened. */
+  async open(opening: Promise<readonly (Asset | Cage)[]>): Promise<void> {
+    const opened = await opening;
+    const parts = await this.#partsOf(opened);
     this.stage.open(this.#streamer, parts);
-    this.stage.navigation.setUp(UP[assets[0]!.info.up]);
+    this.stage.navigation.setUp(UP[opened[0]!.info.up]);
     this.stage.navigation.home(false);
+    this.#applyState();
     this.#address.read();
-    const triangles = assets.reduce((sum, { info }) => sum + info.triangles, 0);
-    byId("subtitle").textContent = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
+    const triangles = opened.reduce((sum, { info }) => sum + info.triangles, 0);
+    const count = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
+    byId("subtitle").textContent = this.refinement ? `${count}, ${WORDS.refinedHere}` : count;
     showViews(this.scene.views, (camera) => this.stage.setCamera(camera, true));
     this.#toolbar.update();
-    if (assets.some(({ source }) => source.whole)) note(WORDS.wholeFile);
+    if (this.stage.layers.some((layer) => layer.isWholeFile)) note(WORDS.wholeFile);
     this.stage.invalidate();
+  }
+
+  async #partsOf(opened: readonly (Asset | Cage)[]): Promise<Part[]> {
+    if (opened.some((one) => "refinement" in one)) {
+      const { RefinementControl } = await import("./refinement");
+      this.refinement = new RefinementControl(this);
+    }
+    return opened.map((one, i) => {
+      const { name, isVisible } = this.scene.layers[i]!;
+      if ("refinement" in one) return this.refinement!.partOf(one, name, isVisible);
+      return { asset: one, name, isVisible };
+    });
   }
 
   /** Change part of the state and show it. */
@@ -182,7 +196,7 @@ export class App {
 
   openSettings(): void {
     this.#settings ??= makeSettings(settingsOf(this));
-    this.#settings.showModal();
+    this.#settings.open();
   }
 
   setErrorPx(errorPx: number): void {
@@ -196,7 +210,16 @@ export class App {
   }
 
   stats(): Stats {
-    return statsOf(this.stage, this.#streamer, this.#frames);
+    return statsOf(this.stage, this.#streamer, this.#refined, this.#frames);
+  }
+
+  /** There can be no picture; after the first one this changes nothing. */
+  fail(problem: Problem): void {
+    this.#noPicture?.(problem);
+  }
+
+  get #refined(): ReturnType<typeof sumOf> {
+    return sumOf(this.refinement?.layers.map((layer) => layer.figures) ?? []);
   }
 
   #goTo(state: State): void {
@@ -213,6 +236,7 @@ export class App {
     stage.layers.forEach((layer, i) => {
       layer.group.visible = this.scene.layers[i]!.isVisible !== state.toggledLayers.includes(i);
     });
+    this.refinement?.apply();
     applyTheme(state.theme);
     this.#status.isShown = state.isStatusOn;
     this.#toolbar.update();
@@ -224,7 +248,10 @@ export class App {
     stillQuery.addEventListener("change", () => {
       this.stage.isStill = stillQuery.matches;
     });
-    addEventListener("online", () => this.#streamer.retry());
+    addEventListener("online", () => {
+      this.#streamer.retry();
+      this.refinement?.retry();
+    });
     document.addEventListener("fullscreenchange", () => this.#toolbar.update());
     watchKeys(this, this.#tools);
     watchPointer(this.stage, (x, y) => this.setPivot(x, y));
@@ -235,7 +262,7 @@ export class App {
     this.#frames++;
     const { stage } = this;
     if (stage.moments.firstPicture !== undefined) this.#firstPicture?.();
-    this.#status.update(figuresOf(stage, this.#streamer));
+    this.#status.update(figuresOf(stage, this.#streamer, this.#refined));
     const progress = byId("progress");
     if (stage.layers.length) progress.hidden = stage.isIdle;
     if (stage.isIdle) this.#address.writeSoon();
@@ -244,7 +271,7 @@ export class App {
   /** Without its first node an asset cannot be shown at all; without any other it is only coarser. */
   #onProblem(problem: Problem, node: number): void {
     const isFatal = node === 0 && this.stage.moments.firstPicture === undefined;
-    if (isFatal) this.#noPicture?.(problem);
+    if (isFatal) this.fail(problem);
     else showWarning(problem.message, () => this.#streamer.retry());
   }
 

@@ -16,7 +16,7 @@ export function watchKeys(app: App, tools: readonly Tool[]): void {
     zoom: (factor) => navigation.zoom(factor),
     view: pressView,
     tool: (letter) => {
-      const tool = tools.find(({ key }) => key === letter);
+      const tool = tools.find(({ key, isAbsent }) => key === letter && !isAbsent?.());
       if (!tool?.isDisabled?.()) tool?.run();
       return tool !== undefined;
     },

@@ -1,12 +1,15 @@
 /** Start: fetch the scene, show it, and say so when that cannot be done. */
+import { CAGE } from "../format/cage";
 import { sentenceOf } from "../format/problem";
-import { type Asset, openAsset } from "../stream/asset";
+import { type Asset, assetOf } from "../stream/asset";
+import type { Cage } from "../stream/cage";
+import { openFile } from "../stream/file";
 import { DecoderPool } from "../stream/pool";
 import type { FovealApi } from "./api";
 import { App } from "./app";
 import { byId } from "./dom";
 import { announce, showFailure } from "./notices";
-import { fetchScene, type SceneFile } from "./sceneFile";
+import { fetchScene, type SceneFile, type SceneLayer } from "./sceneFile";
 import { applyTheme } from "./theme";
 import { WORDS } from "./words";
 
@@ -37,17 +40,25 @@ async function start(): Promise<void> {
   }
 }
 
-/** Begin to fetch all assets of the scene; `onProgress` hears the share of all that is there, 0 to 1. */
-function openAll({ layers }: SceneFile, onProgress: (share: number) => void): Promise<Asset[]> {
+/** Begin to fetch all layers of the scene; `onProgress` hears the share of all that is there, 0 to 1. */
+function openAll({ layers }: SceneFile, onProgress: (share: number) => void): Promise<(Asset | Cage)[]> {
   const shares = layers.map(() => 0);
-  const open = ({ url }: SceneFile["layers"][number], i: number): Promise<Asset> =>
-    openAsset(url, {
-      onProgress: (share) => {
-        shares[i] = share;
-        onProgress(shares.reduce((sum, s) => sum + s, 0) / shares.length);
-      },
+  const open = (layer: SceneLayer, i: number): Promise<Asset | Cage> =>
+    openLayer(layer, (share) => {
+      shares[i] = share;
+      onProgress(shares.reduce((sum, s) => sum + s, 0) / shares.length);
     });
   return Promise.all(layers.map(open));
+}
+
+async function openLayer(
+  { url, live, rest }: SceneLayer,
+  onProgress: (share: number) => void,
+): Promise<Asset | Cage> {
+  const file = await openFile(url, { onProgress });
+  if (file.container.header.kind !== CAGE) return assetOf(file);
+  const { openCage } = await import("./refinement");
+  return openCage(file, live, rest);
 }
 
 function startDecoders(): DecoderPool {

@@ -8,6 +8,10 @@ export interface SceneLayer {
   /** Address of the `.fov`, absolute. */
   readonly url: string;
   readonly isVisible: boolean;
+  /** Address of the server's session for a control mesh, absolute, or null where the page refines by itself. */
+  readonly live: string | null;
+  /** What the layer says beside that, such as how it is refined. */
+  readonly rest: Readonly<Record<string, unknown>>;
 }
 
 export interface NamedView {
@@ -74,12 +78,21 @@ export function parseScene(data: unknown, url: string): SceneFile {
       name: typeof layer.name === "string" ? layer.name : nameOf(layer.asset),
       url: new URL(layer.asset, url).href,
       isVisible: layer.visible !== false,
+      live: typeof layer.live === "string" ? socketAddress(layer.live, url) : null,
+      rest: layer,
     };
   });
   const views = Array.isArray(data.views) ? data.views.flatMap(viewOf) : [];
   const background = typeof data.background === "string" ? data.background : null;
   const title = typeof data.title === "string" && data.title ? data.title : layers[0]!.name;
   return { title, layers, views, background };
+}
+
+/** The same place by the protocol of WebSockets. */
+function socketAddress(live: string, base: string): string {
+  const url = new URL(live, base);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  return url.href;
 }
 
 /** A named view; one that makes no sense is left out, since the scene is there without it. */

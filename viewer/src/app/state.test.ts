@@ -1,8 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { isField, pressKey } from "./keys";
+import { NO_CHOICE } from "./refinementChoice";
 import { fetchScene, parseScene } from "./sceneFile";
-import { positionOf, valueAt } from "./settings";
 import { fileName } from "./sharing";
+import { positionOf, valueAt } from "./slider";
 import { formatState, INITIAL, parseState, type State } from "./state";
 import { directionWords } from "./words";
 
@@ -31,6 +32,17 @@ describe("address", () => {
     background: ["auto", "white", "grey", "black"],
     theme: ["auto", "light", "dark"],
     toggledLayers: [[], [0], [1, 12]],
+    faceColours: ["plain", "levels", "triplet"],
+    refinement: [
+      NO_CHOICE,
+      { ...NO_CHOICE, bendDegrees: 7.5 },
+      { ...NO_CHOICE, frontIterations: 3, positions: "limit" },
+    ],
+    isInsetOn: [null, true, false],
+    insetTurn: [
+      [150, 35],
+      [-90, -12],
+    ],
   };
 
   for (const key of Object.keys(CASES) as (keyof State)[]) {
@@ -47,7 +59,7 @@ describe("address", () => {
       Object.entries(CASES).map(([key, values]) => [key, values.at(-1)]),
     ) as unknown as State;
     expect(parseState(formatState(state))).toEqual(state);
-    expect(formatState(state).length).toBeLessThan(120);
+    expect(formatState(state).length).toBeLessThan(160);
     expect(formatState(INITIAL)).toBe("v=1");
   });
 
@@ -132,6 +144,8 @@ describe("scene file", () => {
       name: "Statue",
       url: "http://127.0.0.1:8000/data/statue.fov",
       isVisible: true,
+      live: null,
+      rest: LAYER,
     });
   });
 
@@ -170,8 +184,13 @@ describe("words and numbers", () => {
       const setting = { ...base, low: 1, high: 1000, isLogarithmic };
       for (let at = 0; at <= 60; at += 6) {
         expect(Math.abs(positionOf(setting, valueAt(setting, at)) - at)).toBeLessThanOrEqual(1);
+        const withZero = { ...setting, hasZero: true };
+        expect(Math.abs(positionOf(withZero, valueAt(withZero, at)) - at)).toBeLessThanOrEqual(1);
       }
+      expect(valueAt({ ...setting, hasZero: true }, 0)).toBe(0);
     }
+    const whole = { ...base, low: 0, high: 10, isLogarithmic: false, isWhole: true };
+    for (let n = 0; n <= 10; n++) expect(valueAt(whole, positionOf(whole, n))).toBe(n);
   });
 
   it("names pictures so that every system takes them", () => {

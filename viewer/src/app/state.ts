@@ -5,7 +5,10 @@
  * workstation's would end a phone's tab.
  */
 import type { Triple } from "../format/graph";
+import { FACE_COLOURS, type FaceColours } from "../scene/layer";
 import type { CameraState } from "../scene/navigation";
+import { FIRST_TURN, type Turn, turned } from "../scene/turn";
+import { formatChoice, NO_CHOICE, parseChoice, type RefinementChoice } from "./refinementChoice";
 
 export const BACKGROUNDS = ["auto", "white", "grey", "black"] as const;
 export type BackgroundName = (typeof BACKGROUNDS)[number];
@@ -26,6 +29,12 @@ export interface State {
   readonly theme: ThemeName;
   /** Numbers of the layers whose visibility differs from the scene's. */
   readonly toggledLayers: readonly number[];
+  /** Of what is refined where it is looked at. */
+  readonly faceColours: FaceColours;
+  readonly refinement: RefinementChoice;
+  /** Null for what suits the device. */
+  readonly isInsetOn: boolean | null;
+  readonly insetTurn: Turn;
 }
 
 export const INITIAL: State = {
@@ -39,6 +48,10 @@ export const INITIAL: State = {
   background: "auto",
   theme: "auto",
   toggledLayers: [],
+  faceColours: "plain",
+  refinement: NO_CHOICE,
+  isInsetOn: null,
+  insetTurn: FIRST_TURN,
 };
 
 const VERSION = "1";
@@ -60,7 +73,20 @@ export function formatState(state: State): string {
   if (state.background !== INITIAL.background) parts.push(["b", state.background]);
   if (state.theme !== INITIAL.theme) parts.push(["t", state.theme]);
   if (state.toggledLayers.length) parts.push(["l", state.toggledLayers.join(",")]);
+  parts.push(...refinementParts(state));
   return parts.map(([key, value]) => `${key}=${value}`).join("&");
+}
+
+function refinementParts(state: State): [string, string][] {
+  const { faceColours, refinement, isInsetOn, insetTurn } = state;
+  const parts: [string, string][] = [];
+  if (faceColours !== INITIAL.faceColours) parts.push(["m", faceColours]);
+  const choice = formatChoice(refinement);
+  if (choice) parts.push(["r", choice]);
+  if (isInsetOn !== null) parts.push(["n", isInsetOn ? "1" : "0"]);
+  const turn = insetTurn.map(Math.round).join(",");
+  if (turn !== INITIAL.insetTurn.join(",")) parts.push(["o", turn]);
+  return parts;
 }
 
 function cameraParts({ position, target, up, fieldOfViewDegrees }: CameraState): [string, string][] {
@@ -108,6 +134,10 @@ export function parseState(fragment: string): State | null {
     background: oneOf(BACKGROUNDS, keys.get("b")),
     theme: oneOf(THEMES, keys.get("t")),
     toggledLayers: layersOf(keys.get("l")),
+    faceColours: oneOf(FACE_COLOURS, keys.get("m")),
+    refinement: parseChoice(keys.get("r")),
+    isInsetOn: keys.has("n") ? flag("n", true) : null,
+    insetTurn: turnOf(keys.get("o")),
   };
 }
 
@@ -123,6 +153,12 @@ function cameraOf(keys: ReadonlyMap<string, string>): CameraState | null {
     up: upOf(keys.get("u")),
     fieldOfViewDegrees: within(keys.get("f"), 5, 120) ?? 40,
   };
+}
+
+function turnOf(text: string | undefined): Turn {
+  const numbers = numbersOf(text);
+  if (numbers?.length !== 2) return INITIAL.insetTurn;
+  return turned(numbers as unknown as Turn, 0, 0);
 }
 
 function upOf(text: string | undefined): Triple {

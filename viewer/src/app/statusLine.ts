@@ -1,5 +1,6 @@
 /** The small print: what is drawn, what was loaded, how exact, how fast. */
 
+import type { RefinementFigures } from "../stream/refinement";
 import { byId, make } from "./dom";
 import { icon } from "./icons";
 import { WORDS } from "./words";
@@ -7,8 +8,11 @@ import { WORDS } from "./words";
 export interface Figures {
   readonly triangles: number;
   readonly receivedBytes: number;
-  readonly allBytes: number;
-  readonly errorPx: number;
+  /** Null where what is received is no part of a file. */
+  readonly allBytes: number | null;
+  /** Null where nothing has an error. */
+  readonly errorPx: number | null;
+  readonly refinement: Pick<RefinementFigures, "milliseconds" | "threshold"> | null;
   /** Null while the picture is still. */
   readonly framesPerSecond: number | null;
 }
@@ -17,7 +21,7 @@ const INTERVAL_MS = 200;
 
 export class StatusLine {
   readonly #root = byId("status");
-  readonly #parts = ["triangles", "bytes", "error", "frames"].map((name) =>
+  readonly #parts = ["triangles", "bytes", "error", "update", "threshold", "frames"].map((name) =>
     make("span", { "data-part": name }),
   );
   #last = 0;
@@ -50,17 +54,21 @@ export class StatusLine {
   #write(): void {
     if (!this.#figures) return;
     this.#last = performance.now();
-    const { triangles, receivedBytes, allBytes, errorPx, framesPerSecond } = this.#figures;
-    const frames =
-      framesPerSecond === null ? WORDS.still : `${Math.round(framesPerSecond)} ${WORDS.framesPerSecond}`;
+    const { triangles, receivedBytes, allBytes, errorPx, refinement, framesPerSecond } = this.#figures;
     const texts = [
       `${triangles.toLocaleString("en")} ${WORDS.triangles}`,
-      WORDS.loadedOf(formatBytes(Math.min(receivedBytes, allBytes)), formatBytes(allBytes)),
-      `${WORDS.error} ${formatPixels(errorPx)}`,
-      frames,
+      allBytes === null
+        ? `${formatBytes(receivedBytes)} ${WORDS.received}`
+        : WORDS.loadedOf(formatBytes(Math.min(receivedBytes, allBytes)), formatBytes(allBytes)),
+      errorPx === null ? "" : `${WORDS.error} ${formatPixels(errorPx)}`,
+      refinement ? `${WORDS.update} ${refinement.milliseconds.toFixed(1)} ms` : "",
+      // by how much edges are longer than wanted, to keep the budgets
+      refinement ? WORDS.threshold(Number(refinement.threshold.toPrecision(2)).toString()) : "",
+      framesPerSecond === null ? WORDS.still : `${Math.round(framesPerSecond)} ${WORDS.framesPerSecond}`,
     ];
     this.#parts.forEach((part, i) => {
       if (part.textContent !== texts[i]) part.textContent = texts[i]!;
+      part.hidden = !texts[i];
     });
   }
 }

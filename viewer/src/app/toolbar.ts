@@ -12,6 +12,8 @@ export interface Tool {
   readonly isPressed?: () => boolean;
   /** For what this scene does not have; it stays reachable, and says so. */
   readonly isDisabled?: () => boolean;
+  /** For what makes no sense in this scene. */
+  readonly isAbsent?: () => boolean;
   /** Short text over the icon, such as the axis. */
   readonly badge?: () => string;
   /** Name that changes with the state. */
@@ -41,6 +43,7 @@ export class Toolbar {
   /** Bring pressed states, names and badges up to date. */
   update(): void {
     for (const [tool, button] of this.#buttons) {
+      button.hidden = tool.isAbsent?.() ?? false;
       const isDisabled = tool.isDisabled?.() ?? false;
       if (tool.isPressed) button.setAttribute("aria-pressed", String(!isDisabled && tool.isPressed()));
       if (tool.isDisabled) button.setAttribute("aria-disabled", String(isDisabled));
@@ -64,7 +67,7 @@ export class Toolbar {
   }
 
   #list(): HTMLButtonElement[] {
-    return [...this.#buttons.values()];
+    return [...this.#buttons.values()].filter((button) => !button.hidden);
   }
 
   #setStop(at: number): void {

@@ -17,6 +17,8 @@ export function makeTools(app: App): Tool[] {
       announce(isOn ? WORDS.on(name) : WORDS.off(name));
     },
   });
+  const hasNoPatches = (): boolean =>
+    app.stage.layers.length > 0 && !app.stage.layers.some((layer) => layer.hasPatches);
   const canFill = document.fullscreenEnabled;
   return [
     { icon: "home", name: WORDS.home, key: "F", run: () => app.home() },
@@ -36,8 +38,9 @@ export function makeTools(app: App): Tool[] {
       isDisabled: () => !app.stage.layers.some((layer) => layer.hasColours),
     },
     { icon: "wireframe", key: "W", ...flag("isWireframe", WORDS.wireframe) },
-    { icon: "patches", key: "P", ...flag("arePatchesTinted", WORDS.patches) },
-    { icon: "spheres", key: "B", ...flag("areSpheresOn", WORDS.spheres) },
+    { icon: "patches", key: "P", ...flag("arePatchesTinted", WORDS.patches), isAbsent: hasNoPatches },
+    { icon: "spheres", key: "B", ...flag("areSpheresOn", WORDS.spheres), isAbsent: hasNoPatches },
+    ...refinementTools(app),
     {
       icon: "screenshot",
       name: WORDS.screenshot,
@@ -61,5 +64,42 @@ export function makeTools(app: App): Tool[] {
     { icon: "theme", name: WORDS.theme, key: "T", run: () => app.toggleTheme() },
     { icon: "status", key: "I", ...flag("isStatusOn", WORDS.status) },
     { icon: "help", name: WORDS.help, key: "H", run: () => app.help.showModal() },
+  ];
+}
+
+/** Of what is refined where it is looked at; there is none before the scene is open. */
+function refinementTools(app: App): Tool[] {
+  const isAbsent = (): boolean => !app.refinement;
+  const say = (name: string, isOn: boolean): void => announce(isOn ? WORDS.on(name) : WORDS.off(name));
+  return [
+    {
+      icon: "levels",
+      name: WORDS.faceColours,
+      key: "M",
+      isAbsent,
+      isPressed: () => app.state.faceColours !== "plain",
+      run: () => {
+        app.change({ faceColours: app.state.faceColours === "plain" ? "levels" : "plain" });
+        say(WORDS.faceColours, app.state.faceColours !== "plain");
+      },
+    },
+    {
+      icon: "inset",
+      name: WORDS.inset,
+      key: "E",
+      isAbsent,
+      isPressed: () => app.refinement?.isInsetOn ?? false,
+      run: () => {
+        app.refinement?.toggleInset();
+        say(WORDS.inset, app.refinement?.isInsetOn ?? false);
+      },
+    },
+    {
+      icon: "refinement",
+      name: WORDS.refinement,
+      key: "R",
+      isAbsent,
+      run: () => app.refinement?.openPanel(),
+    },
   ];
 }

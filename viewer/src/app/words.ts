@@ -6,6 +6,14 @@ export const WORDS = {
   wireframe: "Wireframe",
   patches: "Patch colours",
   spheres: "Bounding spheres",
+  refinement: "Refinement",
+  faceColours: "Colour by level",
+  inset: "The mesh from elsewhere",
+  insetTurns: "The mesh from elsewhere: arrow keys or dragging turn it.",
+  answersAgain: "The server answers again.",
+  refinedHere: "refined where you look",
+  update: "update",
+  threshold: (factor: string) => `edges × ${factor}`,
   screenshot: "Save picture",
   share: "Copy link to this view",
   fullscreen: "Full screen",
@@ -39,9 +47,16 @@ export const WORDS = {
     "Arrow keys turn the model, Shift and arrow keys move it, plus and minus zoom, F shows all of it. H opens help.",
   triangles: "triangles",
   loadedOf: (bytes: string, all: string) => `${bytes} of ${all}`,
+  received: "received",
   error: "error",
   framesPerSecond: "frames/s",
   layer: (name: string) => `Layer ${name}`,
+} as const;
+
+export const SCHEME_NAMES = {
+  sqrt3: "√3 subdivision",
+  loop: "Loop subdivision as an RGB triangulation",
+  butterfly: "Modified butterfly subdivision as an RGB triangulation",
 } as const;
 
 /** Rows of the help page: what to do, with the mouse, by touch, by keys. */
@@ -60,6 +75,9 @@ export const HELP_KEYS: readonly (readonly [string, string])[] = [
   ["W", "wireframe"],
   ["P", "patch colours"],
   ["B", "bounding spheres"],
+  ["R", "refinement"],
+  ["M", "colour by level"],
+  ["E", "mesh from elsewhere"],
   ["S", "save picture"],
   ["L", "copy link"],
   ["X", "full screen"],

@@ -23,6 +23,11 @@ export function defaultBudgets({ isCoarse, memoryGiB }: DeviceHints): Budgets {
   return { errorPx: 2, triangles: DESKTOP.triangles / 4, bytes: DESKTOP.bytes / 4 };
 }
 
+/** Triangles of a refinement at most, where nobody chose: each update has to come over the wire, too. */
+export function refinedTriangles(hints: DeviceHints): number {
+  return defaultBudgets(hints).triangles / 8;
+}
+
 export function deviceHints(): DeviceHints {
   const { deviceMemory } = navigator as Navigator & { deviceMemory?: number };
   return { isCoarse: matchMedia("(pointer: coarse)").matches, memoryGiB: deviceMemory };

@@ -14,6 +14,8 @@ export class FrameClock {
   elapsed = FIRST_STEP_MS;
   /** The next frame follows at once; else, after a rest, the clock begins anew: a long pause is not a long step. */
   isOn = false;
+  /** Milliseconds from the beginning of the last frame until it was drawn, as far as the page can tell. */
+  spent = 0;
   #now = 0;
   #lastMoved = Number.NEGATIVE_INFINITY;
 
@@ -26,6 +28,11 @@ export class FrameClock {
     this.times.push(interval);
     if (this.times.length > TIMES_KEPT) this.times.shift();
     return interval;
+  }
+
+  /** The present frame is drawn. */
+  end(now: number): void {
+    this.spent = Math.max(0, now - this.#now);
   }
 
   /** The camera moved in this frame. */

@@ -83,11 +83,9 @@ void main() {
 }
 `;
 
-/** Depth along the view axis over \`far\`, in four bytes. */
-const DEPTH_FRAGMENT = /* glsl */ `
-in vec3 vNormal;
+/** Depth along the view axis over `far`, in four bytes: of any surface that tells `vPosition`. */
+export const DEPTH_FRAGMENT = /* glsl */ `
 in vec3 vPosition;
-in vec3 vSrgb;
 uniform float far;
 out vec4 pixel;
 void main() {

@@ -218,7 +218,7 @@ export class Navigation {
 }
 
 /** Level direction from the scene to who stands before it: -y where z is up, else +z. */
-function frontOf(up: Vector3): Vector3 {
+export function frontOf(up: Vector3): Vector3 {
   const front = Math.abs(up.z) > 0.7 ? new Vector3(0, -1, 0) : new Vector3(0, 0, 1);
   return front.addScaledVector(up, -front.dot(up)).normalize();
 }

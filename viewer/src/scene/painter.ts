@@ -1,25 +1,18 @@
 /** Draws: the scene with its background, wires and spheres over it, and the depth under a pixel. */
-import { type Material, type PerspectiveCamera, Scene, type Vector3, type WebGLRenderer } from "three";
-import { Background, type BackgroundColours } from "./background";
+import { type PerspectiveCamera, Scene, type Vector3, type WebGLRenderer } from "three";
+import { Background } from "./background";
 import { MAX_PIXEL_RATIO } from "./device";
-import type { Layer } from "./layer";
+import { Inset } from "./inset";
+import type { Layer, Look, Pass } from "./layer";
 import { makeMaterials, type PatchMaterials } from "./material";
 import { Picker } from "./picking";
 import { makeGraphics, waitUntilDrawn } from "./renderer";
 import { SphereLines } from "./spheres";
 
-/** How it is drawn, whatever is drawn. */
-export interface Look {
-  readonly areColoursOn: boolean;
-  readonly arePatchesTinted: boolean;
-  readonly isWireframe: boolean;
-  readonly areSpheresOn: boolean;
-  readonly background: BackgroundColours;
-}
-
 export class Painter {
   readonly materials: PatchMaterials = makeMaterials();
   readonly layers: Layer[] = [];
+  readonly inset = new Inset();
   /** Of the latest picture. */
   readonly drawn = { patches: 0, triangles: 0 };
   /** The processor draws. */
@@ -31,7 +24,7 @@ export class Painter {
   readonly #picker: Picker;
   #isWireframe = false;
   #areSpheresOn = false;
-  #areColoursOn = true;
+  #look: Look | undefined;
 
   /** @throws Problem if the browser has no WebGL2. */
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -39,12 +32,12 @@ export class Painter {
     this.#renderer = renderer;
     this.isSoftware = isSoftware;
     renderer.info.autoReset = false;
-    this.#picker = new Picker(renderer, this.materials);
+    this.#picker = new Picker(renderer);
     this.#scene.matrixWorldAutoUpdate = false;
     this.#scene.onBeforeRender = (_renderer, _scene, camera) => {
       for (const layer of this.layers) layer.follow(camera);
     };
-    this.#scene.add(this.#background.mesh, this.#spheres.lines);
+    this.#scene.add(this.#background.mesh, this.#spheres.lines, this.inset.frustum);
   }
 
   /** What is on the GPU now, as three counts it. */
@@ -54,14 +47,14 @@ export class Painter {
   }
 
   add(layer: Layer): void {
-    layer.areColoursOn = this.#areColoursOn;
+    if (this.#look) layer.dress(this.#look);
     this.layers.push(layer);
     this.#scene.add(layer.group);
   }
 
   set look(look: Look) {
-    this.#areColoursOn = look.areColoursOn;
-    for (const layer of this.layers) layer.areColoursOn = look.areColoursOn;
+    this.#look = look;
+    for (const layer of this.layers) layer.dress(look);
     this.materials.uniforms.hasTint.value = look.arePatchesTinted;
     this.#isWireframe = look.isWireframe;
     this.materials.solid.polygonOffset = look.isWireframe;
@@ -81,14 +74,16 @@ export class Painter {
     return width / height;
   }
 
-  draw(camera: PerspectiveCamera): void {
+  /** @param depth - How far ahead the camera looks, for the picture from elsewhere. */
+  draw(camera: PerspectiveCamera, depth: number): void {
     if (this.#areSpheresOn) this.#spheres.update(this.layers.filter((layer) => layer.group.visible));
     this.#renderer.info.reset();
     this.#renderer.autoClear = true;
     this.#renderer.render(this.#scene, camera);
     this.drawn.patches = this.layers.reduce((sum, layer) => sum + layer.drawn.patches, 0);
     this.drawn.triangles = this.layers.reduce((sum, layer) => sum + layer.drawn.triangles, 0);
-    if (this.#isWireframe) this.#drawOver(camera, this.materials.wire);
+    if (this.#isWireframe) this.#drawOver(camera, "wires");
+    if (this.inset.place) this.#drawInset(camera, depth);
   }
 
   /** Return when it is drawn. */
@@ -100,32 +95,55 @@ export class Painter {
   warmUp(camera: PerspectiveCamera): void {
     this.#renderer.setScissorTest(true);
     this.#renderer.setScissor(0, 0, 1, 1);
-    this.#drawOver(camera, this.materials.fading); // looks the same: what does not fade shows in all pixels
+    this.#drawOver(camera, "warm-up"); // looks the same: what does not fade shows in all pixels
     this.#renderer.setScissorTest(false);
     this.pick(0.5, 0.5, camera);
   }
 
   /** The point at a share of the picture's width and height from its top left corner, or null. */
   pick(x: number, y: number, camera: PerspectiveCamera): Vector3 | null {
-    return this.#withLayersOnly(() => this.#picker.pick(x, y, this.#scene, camera));
+    return this.#withLayersOnly("depth", () => this.#picker.pick(x, y, this.#scene, camera));
   }
 
   /** The layers again, over the picture. */
-  #drawOver(camera: PerspectiveCamera, material: Material): void {
-    this.#withLayersOnly(() => {
+  #drawOver(camera: PerspectiveCamera, pass: Pass): void {
+    this.#withLayersOnly(pass, () => {
       this.#renderer.autoClear = false;
-      this.#scene.overrideMaterial = material;
       this.#renderer.render(this.#scene, camera);
-      this.#scene.overrideMaterial = null;
     });
   }
 
-  #withLayersOnly<T>(work: () => T): T {
+  #withLayersOnly<T>(pass: Pass, work: () => T): T {
+    for (const layer of this.layers) layer.wear(pass);
     this.#background.mesh.visible = false;
     this.#spheres.lines.visible = false;
     const result = work();
     this.#background.mesh.visible = true;
     this.#spheres.lines.visible = this.#areSpheresOn;
+    for (const layer of this.layers) layer.wear("picture");
     return result;
+  }
+
+  /** The scene once more, in its corner, seen from elsewhere. */
+  #drawInset(camera: PerspectiveCamera, depth: number): void {
+    const { inset } = this;
+    const { left, top, width, height } = inset.place!;
+    inset.follow(camera, depth);
+    const corner = [left, this.canvas.clientHeight - top - height, width, height] as const;
+    const renderer = this.#renderer;
+    renderer.setViewport(...corner);
+    renderer.setScissor(...corner);
+    renderer.setScissorTest(true);
+    renderer.autoClear = false;
+    renderer.clearDepth();
+    for (const layer of this.layers) layer.wear("inset");
+    inset.frustum.visible = true;
+    this.#spheres.lines.visible = false;
+    renderer.render(this.#scene, inset.camera);
+    this.#spheres.lines.visible = this.#areSpheresOn;
+    inset.frustum.visible = false;
+    for (const layer of this.layers) layer.wear("picture");
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
   }
 }

@@ -18,7 +18,7 @@ import type { NodeAt } from "../stream/streamer";
 import { Fade } from "./fade";
 import { type Frame, toFrame } from "./frame";
 import { GridPlace } from "./gridPlace";
-import type { Cost, Layer } from "./layer";
+import type { Cost, Layer, Look, Pass } from "./layer";
 import type { PatchMaterials } from "./material";
 import { viewOf } from "./view";
 
@@ -43,8 +43,9 @@ const FADE_MS = 150;
 export class PatchLayer implements Layer {
   readonly group = new Group();
   readonly hasColours: boolean;
+  readonly hasPatches = true;
   readonly drawn = { patches: 0, triangles: 0 };
-  areColoursOn = true;
+  #areColoursOn = true;
   readonly #selection: Selection;
   readonly #fade: Fade;
   /** 1 for the nodes on the GPU. */
@@ -78,6 +79,11 @@ export class PatchLayer implements Layer {
 
   get fileBytes(): number {
     return this.asset.container.size;
+  }
+
+  /** The streamer counts for all layers of patches. */
+  get receivedBytes(): number {
+    return 0;
   }
 
   get isWholeFile(): boolean {
@@ -165,15 +171,32 @@ export class PatchLayer implements Layer {
         const look = mesh.userData as PatchLook;
         look.low = low;
         look.high = high;
-        mesh.material = low === 0 && high === 1 ? this.materials.solid : this.materials.fading;
+        mesh.material = this.#materialOf(look);
       });
     }
+  }
+
+  dress({ areColoursOn }: Look): void {
+    this.#areColoursOn = areColoursOn;
+  }
+
+  wear(pass: Pass): void {
+    const { wire, depth, fading } = this.materials;
+    const one = { wires: wire, depth, "warm-up": fading, picture: null, inset: null }[pass];
+    for (const mesh of this.group.children as Mesh[]) {
+      if (mesh.visible) mesh.material = one ?? this.#materialOf(mesh.userData as PatchLook);
+    }
+  }
+
+  #materialOf({ low, high }: PatchLook): Material {
+    return low === 0 && high === 1 ? this.materials.solid : this.materials.fading;
   }
 
   follow(camera: Camera): void {
     this.drawn.patches = 0;
     this.drawn.triangles = 0;
     this.#place.follow(camera);
+    this.materials.uniforms.far.value = (camera as PerspectiveCamera).far;
   }
 
   forEachSphere(visit: (centre: Triple, radius: number) => void): void {
@@ -231,7 +254,7 @@ export class PatchLayer implements Layer {
     uniforms.tint.value.copy(look.tint);
     uniforms.normalSteps.value = this.#normalSteps;
     uniforms.isFlat.value = !this.#hasNormals;
-    uniforms.hasColours.value = this.hasColours && this.areColoursOn;
+    uniforms.hasColours.value = this.hasColours && this.#areColoursOn;
     (material as Material & { uniformsNeedUpdate: boolean }).uniformsNeedUpdate = true;
   }
 }

@@ -8,21 +8,17 @@ import {
   type WebGLRenderer,
   WebGLRenderTarget,
 } from "three";
-import type { PatchMaterials } from "./material";
 
 export class Picker {
   readonly #target = new WebGLRenderTarget(1, 1, { minFilter: NearestFilter, magFilter: NearestFilter });
 
-  constructor(
-    private readonly renderer: WebGLRenderer,
-    private readonly materials: PatchMaterials,
-  ) {}
+  constructor(private readonly renderer: WebGLRenderer) {}
 
   /**
    * The point under (x, y), or null over the background.
    *
    * @param x, y - Share of the picture's width and height, 0 to 1, from its top left corner.
-   * @param scene - All that is visible in it may be hit.
+   * @param scene - All that is visible in it may be hit; it is dressed to draw its depth over the camera's far plane.
    */
   pick(x: number, y: number, scene: Scene, camera: PerspectiveCamera): Vector3 | null {
     const { renderer } = this;
@@ -30,8 +26,6 @@ export class Picker {
     const height = 4096; // of a picture that is only thought of: one pixel of it is drawn
     const width = height * camera.aspect; // three takes the aspect from here
     camera.setViewOffset(width, height, x * width - 0.5, y * height - 0.5, 1, 1);
-    this.materials.uniforms.far.value = camera.far;
-    scene.overrideMaterial = this.materials.depth;
     renderer.setRenderTarget(this.#target);
     renderer.setClearColor(0x000000, 0);
     renderer.clear();
@@ -40,7 +34,6 @@ export class Picker {
     renderer.readRenderTargetPixels(this.#target, 0, 0, 1, 1, bytes);
     renderer.setRenderTarget(null);
     renderer.setClearColor(clear, 1);
-    scene.overrideMaterial = null;
     camera.clearViewOffset();
     const share = bytes.reduce((sum, byte, i) => sum + byte / 255 / 255 ** i, 0);
     if (share <= 0) return null;

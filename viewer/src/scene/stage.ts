@@ -2,13 +2,15 @@
 import type { Vector3 } from "three";
 import type { Asset } from "../stream/asset";
 import type { Streamer } from "../stream/streamer";
-import { boxOf, frameOf, halfBoxOf } from "./frame";
+import { type Box, boxOf, type Frame, frameOf, halfBoxOf } from "./frame";
 import { FrameClock } from "./frameClock";
-import type { Layer } from "./layer";
+import type { InsetPlace } from "./inset";
+import type { Layer, Look } from "./layer";
 import { MotionBudget } from "./motionBudget";
 import { type CameraState, Navigation } from "./navigation";
-import { type Look, Painter } from "./painter";
+import { Painter } from "./painter";
 import { PatchFeed } from "./patchFeed";
+import type { Turn } from "./turn";
 
 export interface StageOptions {
   readonly errorPx: number;
@@ -18,6 +20,12 @@ export interface StageOptions {
   readonly onLost: () => void;
   readonly onRestored: () => void;
 }
+
+/** What is shown: the patches of an asset, or a layer of another kind, made when the frame of all is known. */
+export type Part = { readonly name: string; readonly isVisible: boolean } & (
+  | { readonly asset: Asset }
+  | { readonly box: Box; readonly makeLayer: (frame: Frame) => Layer }
+);
 
 export class Stage {
   readonly navigation: Navigation;
@@ -56,16 +64,19 @@ export class Stage {
     return this.painter.layers;
   }
 
-  /** Show these assets; the names are the layers'. */
-  open(streamer: Streamer, assets: readonly { name: string; asset: Asset; isVisible: boolean }[]): void {
-    const boxes = assets.map(({ asset }) => boxOf(asset.info));
+  /** Show these parts; the names are the layers'. */
+  open(streamer: Streamer, parts: readonly Part[]): void {
+    const boxes = parts.map((part) => ("asset" in part ? boxOf(part.asset.info) : part.box));
     const frame = frameOf(boxes);
     this.navigation.frame = frame;
     this.navigation.halfBox = halfBoxOf(boxes, frame);
-    this.#feed = new PatchFeed(streamer);
-    for (const { name, asset, isVisible } of assets) {
-      const layer = this.#feed.open(name, asset, frame, this.painter.materials);
-      layer.group.visible = isVisible;
+    const feed = new PatchFeed(streamer);
+    this.#feed = feed;
+    const { materials } = this.painter;
+    for (const part of parts) {
+      const layer =
+        "asset" in part ? feed.open(part.name, part.asset, frame, materials) : part.makeLayer(frame);
+      layer.group.visible = part.isVisible;
       layer.isStill = this.navigation.isStill;
       this.painter.add(layer);
     }
@@ -98,6 +109,13 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Where on the canvas the picture from elsewhere is, null for nowhere, and from where it looks. */
+  setInset(place: InsetPlace | null, turn: Turn): void {
+    this.painter.inset.place = place;
+    this.painter.inset.turn = turn;
+    this.invalidate();
+  }
+
   setCamera(state: CameraState, isSmooth = false): void {
     this.navigation.setCamera(state, isSmooth);
     this.invalidate();
@@ -121,7 +139,7 @@ export class Stage {
 
   /** The picture as a PNG, without anything of the page. */
   screenshot(): Promise<Blob> {
-    this.painter.draw(this.navigation.camera);
+    this.#paint();
     return new Promise((resolve, reject) => {
       this.canvas.toBlob((blob) =>
         blob ? resolve(blob) : reject(new Error("The picture could not be saved.")),
@@ -174,10 +192,16 @@ export class Stage {
     });
   }
 
+  #paint(): void {
+    const { camera, controls } = this.navigation;
+    this.painter.draw(camera, controls.distance);
+  }
+
   #draw(): void {
     const { painter, clock } = this;
-    painter.draw(this.navigation.camera);
+    this.#paint();
     if (clock.isMoving && painter.isSoftware) painter.wait();
+    clock.end(performance.now());
     if (painter.drawn.patches > 0) this.moments.firstPicture ??= performance.now();
   }
 

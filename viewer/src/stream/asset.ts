@@ -1,12 +1,10 @@
-/** An opened `.fov`: what is known of it before any patch is loaded. */
-import { type Container, damaged, headLength, parseContainer } from "../format/container";
+/** An opened `.fov` of patches: what is known of it before any patch is loaded. */
+import { damaged } from "../format/container";
 import { crc32 } from "../format/crc32";
 import { type Graph, type MultiresInfo, parseGraph, parseInfo } from "../format/graph";
-import { type Fetch, Passing, Source } from "./source";
+import { firstChunk, type OpenFile, type OpenOptions, openFile } from "./file";
 
-export interface Asset {
-  readonly source: Source;
-  readonly container: Container;
+export interface Asset extends OpenFile {
   readonly info: MultiresInfo;
   readonly graph: Graph;
   /** The codec's shared tables. */
@@ -15,54 +13,28 @@ export interface Asset {
   readonly nodeBytes: Float64Array;
 }
 
-const TRIES = 4;
-
 /**
  * Fetch and check header, index and graph.
  *
  * @throws Problem in a sentence about the file.
  */
-export async function openAsset(
-  url: string,
-  options: { signal?: AbortSignal; onProgress?: (share: number) => void; fetch?: Fetch } = {},
-): Promise<Asset> {
-  const source = await persist(() => Source.open(url, options.signal, options.onProgress, options.fetch));
+export async function openAsset(url: string, options: OpenOptions = {}): Promise<Asset> {
+  return assetOf(await openFile(url, options), options.signal);
+}
+
+/**
+ * The asset of a file whose header and index are here already.
+ *
+ * @throws Problem in a sentence about the file.
+ */
+export async function assetOf(file: OpenFile, signal?: AbortSignal): Promise<Asset> {
+  const { source, container } = file;
   const { name } = source;
-  const headBytes = await atLeast(source, headLength(source.head, name), options.signal);
-  const container = parseContainer(headBytes, name, source.size);
   const info = parseInfo(container.header, name);
-  const first = container.starts[0]!;
-  const firstEnd = first + container.lengths[0]!;
-  const bytes = await atLeast(source, firstEnd, options.signal);
-  const chunk = bytes.subarray(first, firstEnd);
+  const chunk = await firstChunk(file, signal);
   if (crc32(chunk) !== container.checksums[0]) throw damaged(name);
   const { graph, tables } = parseGraph(chunk, container, name);
   return { source, container, info, graph, tables, nodeBytes: bytesOfNodes(graph, info) };
-}
-
-/** The file's first bytes up to `end`, the missing ones fetched. */
-async function atLeast(source: Source, end: number, signal?: AbortSignal): Promise<Uint8Array> {
-  const have = source.head;
-  if (end <= have.length) return have;
-  if (source.size !== null && end > source.size) throw damaged(source.name);
-  const rest = await persist(() => source.read(have.length, end, signal));
-  const all = new Uint8Array(end);
-  all.set(have);
-  all.set(rest, have.length);
-  source.head = all;
-  return all;
-}
-
-/** Try again, ever later, what may pass. */
-export async function persist<T>(work: () => Promise<T>, tries = TRIES, firstPause = 300): Promise<T> {
-  for (let attempt = 1; ; attempt++) {
-    try {
-      return await work();
-    } catch (error) {
-      if (!(error instanceof Passing) || attempt >= tries) throw error;
-      await new Promise((resolve) => setTimeout(resolve, firstPause * 2 ** (attempt - 1)));
-    }
-  }
 }
 
 /** As `packPatch` will lay them out: 8 bytes a position, 4 a normal, 4 a colour, 6 or 12 a triangle. */

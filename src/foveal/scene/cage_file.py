@@ -1,0 +1,155 @@
+"""The `.fov` of kind "cage": a control mesh, and how it is meant to be refined. See spec/container.md."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.base.errors import FovealError
+from foveal.base.files import PathLike
+from foveal.base.version import __version__
+from foveal.container import Container, create, open_container
+from foveal.mesh.trimesh import TriMesh
+
+from .refinement import Refinement, refinement_json, refinement_of
+
+__all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
+
+KIND, VERSION = "cage", 1
+_MOST = 1 << 26  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
+
+
+@dataclass(frozen=True, slots=True)
+class ControlMesh:
+    """What a `.fov` of kind "cage" holds.
+
+    Attributes
+    ----------
+    mesh : TriMesh
+        Positions and faces only.
+    refinement : Refinement
+        What is meant where nothing else is chosen.
+    up : "x", "y" or "z"
+    """
+
+    mesh: TriMesh
+    refinement: Refinement
+    up: str
+
+
+@dataclass(frozen=True)
+class CageReport:
+    """What was written.
+
+    Attributes
+    ----------
+    triangles, vertices : int
+        Of the control mesh.
+    welded : int
+        Vertices that lay where another one does, made one with it.
+    scheme : str
+    bytes : int
+        Of the file.
+    """
+
+    triangles: int
+    vertices: int
+    welded: int
+    scheme: str
+    bytes: int
+
+
+def write_cage(
+    mesh: TriMesh, path: PathLike, /, *, refinement: Refinement, up: str = "y", name: str = "mesh"
+) -> CageReport:
+    """Write a control mesh; vertices at one place become one.
+
+    Raises
+    ------
+    FovealError
+        If the mesh is no oriented surface, in a sentence that names the edge or vertex.
+    """
+    from foveal.mesh.topology import weld
+    from foveal.refine.cage import Cage
+
+    welded = weld(mesh)[0]
+    positions, faces = welded.positions, welded.faces
+    if max(len(positions), len(faces)) > _MOST:
+        raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
+    Cage.of(welded, name=name)
+    low, high, origin = _box(positions)
+    header = {
+        "generator": f"foveal {__version__}",
+        "origin": origin.tolist(),
+        "box": [low.tolist(), high.tolist()],
+        "up": up,
+        "vertices": len(positions),
+        "triangles": len(faces),
+        **refinement_json(refinement),
+    }
+    with create(path, kind=KIND, version=VERSION) as writer:
+        writer.finish(header, positions.astype("<f8").tobytes() + faces.astype("<u4").tobytes())
+    repeated = len(mesh.positions) - len(positions)
+    return CageReport(len(faces), len(positions), repeated, refinement.scheme, Path(path).stat().st_size)
+
+
+def is_cage(path: PathLike, /) -> bool:
+    """Whether a file is a `.fov` that holds a control mesh; what else is wrong its reader says."""
+    path = Path(path)
+    if path.suffix.lower() != ".fov":
+        return False
+    with open_container(path) as file:
+        return file.kind == KIND
+
+
+def read_cage(path: PathLike, /) -> ControlMesh:
+    """Read a `.fov` of kind "cage".
+
+    Raises
+    ------
+    FovealError
+        If it cannot be read, is damaged, or is of another kind or version.
+    """
+    with open_container(path) as file:
+        return control_mesh(file)
+
+
+def control_mesh(file: Container, /) -> ControlMesh:
+    """The same of an open file."""
+    file.expect(KIND, VERSION)
+    header = file.header
+    vertices, faces = _count(file, "vertices"), _count(file, "triangles")
+    data = file.chunk(0)
+    if len(file) != 1 or len(data) != 24 * vertices + 12 * faces:
+        raise _damaged(file, "lengths")
+    indices = np.frombuffer(data, "<u4", offset=24 * vertices).reshape(-1, 3)
+    if (indices >= vertices).any():
+        raise _damaged(file, "faces")
+    mesh = TriMesh.of(
+        np.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3), indices.astype(np.int32), name=file.name
+    )
+    low, high, origin = _box(mesh.positions)
+    if header.get("origin") != origin.tolist() or header.get("box") != [low.tolist(), high.tolist()]:
+        raise _damaged(file, "box")
+    up = header.get("up")
+    if up not in ("x", "y", "z"):
+        raise _damaged(file, "up")
+    return ControlMesh(mesh, refinement_of(header, file.name), up)
+
+
+def _box(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    """Least and greatest corner, and the origin: the middle, halved first so that no sum overflows."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    return low, high, 0.5 * low + 0.5 * high
+
+
+def _count(file: Container, key: str) -> int:
+    value = file.header.get(key)
+    if type(value) is not int or not 1 <= value <= _MOST:
+        raise _damaged(file, key)
+    return value
+
+
+def _damaged(file: Container, what: str) -> FovealError:
+    return FovealError(f"{file.name}: its header is damaged ({what}). Copy or build the file again.")

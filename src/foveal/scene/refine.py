@@ -1,0 +1,126 @@
+"""A control mesh refined for a view, or everywhere, as a mesh."""
+
+import os
+from pathlib import Path
+from typing import Unpack
+
+from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, refuse_missing
+from foveal.base.progress import SILENT, Progress
+from foveal.mesh.trimesh import TriMesh
+from foveal.view.camera import Camera
+
+from .build import Source, checked, up_of
+from .cage_file import ControlMesh, is_cage, read_cage
+from .export import refuse_mesh_output, write_mesh
+from .prepare import refuse_shaping
+from .read import read
+from .refinement import Refinement, RefineOptions, chosen
+from .render import home, read_camera
+
+__all__ = ["refine", "refined"]
+
+
+def refine(
+    source: Source,
+    output: PathLike | None = None,
+    /,
+    *,
+    camera: Camera | PathLike | None = None,
+    everywhere: bool = False,
+    up: str | None = None,
+    progress: Progress = SILENT,
+    **options: Unpack[RefineOptions],
+) -> TriMesh:
+    """Refine a control mesh where a camera sees it, and write a PLY or GLB of it.
+
+    `foveal.refine.sqrt3` is the same for a mesh in memory; `foveal.refine.Sqrt3` follows a camera.
+
+    Parameters
+    ----------
+    source : path or TriMesh
+        A mesh, vertices at one place made one, or a `.fov` that holds a control mesh.
+    output : path, optional
+        Where to write it too; the suffix, `.ply` or `.glb`, says the format.
+    camera : Camera or path, optional
+        By default all is framed, as the viewer does at first. A path is of a camera file.
+    everywhere : bool
+        Refine uniformly instead, as often as the criteria's front faces.
+    up : "x", "y" or "z", optional
+        Of a mesh, the axis that points up, where it is not the format's own.
+    progress : Progress
+        Told that it is done.
+    **options
+        See `RefineOptions`. By default what the file says; of any other mesh √3 with the default criteria.
+
+    Returns
+    -------
+    TriMesh
+        Positions in the source's unit and axes, of no more triangles than the budget.
+
+    Raises
+    ------
+    FovealError
+        If the source is no oriented surface, or a file cannot be read or written.
+
+    Examples
+    --------
+    >>> from foveal.mesh.shapes import icosphere
+    >>> from foveal.refine import Criteria, Region
+    >>> len(refine(icosphere(0), everywhere=True, criteria=Criteria(Region(2))).faces)
+    180
+    """
+    source = checked(source)
+    if output is not None:
+        refuse_mesh_output(Path(output), source)
+    with progress.stage("Refining", 1) as stage:
+        cage = _cage(source, up, options)
+        name = "mesh" if isinstance(source, TriMesh) else str(source)
+        if isinstance(camera, (str, os.PathLike)):
+            camera = read_camera(camera)
+        if everywhere:
+            mesh = _everywhere(cage, name)
+        else:
+            eye = camera or home([cage.mesh.positions], up=cage.up)
+            mesh = refined(cage.mesh, cage.refinement, eye, name=name)
+        stage.advance(1)
+    if output is not None:
+        write_mesh(mesh, Path(output), cage.up)
+    return mesh
+
+
+def refined(mesh: TriMesh, refinement: Refinement, camera: Camera, /, *, name: str = "mesh") -> TriMesh:
+    """A control mesh refined for one view, within its budget."""
+    from foveal.refine.pace import update_within
+    from foveal.refine.scheme import refiner
+
+    live = refiner(mesh, scheme=refinement.scheme, name=name)
+    update_within(live, camera, refinement.criteria, refinement.budget)
+    return live.mesh(positions=refinement.positions)
+
+
+def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> ControlMesh:
+    """What is to be refined, and how."""
+    from foveal.mesh.topology import weld
+
+    if isinstance(source, Path):
+        refuse_missing(source)
+        if source.suffix.lower() == ".json":
+            raise FovealError(f"{source}: a scene.json is not refined whole; refine its files one by one.")
+        if is_cage(source):
+            refuse_shaping(source, {"up": up}, is_refined=True)
+            cage = read_cage(source)
+            return ControlMesh(cage.mesh, cage.refinement.chosen(options), cage.up)
+    refinement = chosen({**options, "scheme": options.get("scheme") or "sqrt3"})
+    assert refinement is not None
+    mesh = source if isinstance(source, TriMesh) else read(source)
+    return ControlMesh(weld(mesh)[0], refinement, up_of({"up": up}))
+
+
+def _everywhere(cage: ControlMesh, name: str) -> TriMesh:
+    """Uniform refinement: of all that a camera sees which sees all."""
+    from foveal.refine import Criteria, Region
+
+    region = Region(cage.refinement.criteria.front.iterations)
+    refinement = cage.refinement.chosen({"criteria": Criteria(region, region, region)})
+    return refined(cage.mesh, refinement, home([cage.mesh.positions], up=cage.up), name=name)

@@ -1,0 +1,150 @@
+"""How a control mesh is refined: its scheme, criteria and limits, chosen in Python and kept in JSON."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
+
+from foveal.base.errors import FovealError
+
+if TYPE_CHECKING:
+    from foveal.refine import Criteria
+
+__all__ = ["RefineOptions", "Refinement", "chosen", "refinement_json", "refinement_of"]
+
+SCHEMES = ("sqrt3", "loop", "butterfly")
+_PLACINGS = ("control", "limit")
+_REGIONS = ("front", "silhouette", "back")
+
+
+class RefineOptions(TypedDict, total=False):
+    """What verbs take that refine a control mesh. None is the default, or what the file or the scene says.
+
+    scheme : "sqrt3", "loop" or "butterfly"
+        Makes a control mesh of a mesh: √3 subdivision, or RGB triangulations over the rules of Loop or of
+        the modified butterfly.
+    criteria : Criteria
+        When a triangle is fine enough, apart for front faces, silhouettes and back faces.
+    positions : "control" or "limit"
+        Where vertices are shown.
+    budget : int
+        Triangles at most; 0 for no limit.
+    rate : float
+        Frames a second that the viewer is to hold; 0 for no such wish.
+    """
+
+    scheme: str | None
+    criteria: "Criteria | None"
+    positions: str | None
+    budget: int | None
+    rate: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """How a control mesh is refined.
+
+    Attributes
+    ----------
+    scheme : "sqrt3", "loop" or "butterfly"
+    criteria : Criteria
+    positions : "control" or "limit"
+    budget : int
+        Triangles at most, or 0.
+    rate : float
+        Frames a second to be held, or 0.
+    """
+
+    scheme: Literal["sqrt3", "loop", "butterfly"]
+    criteria: "Criteria"
+    positions: Literal["control", "limit"] = "control"
+    budget: int = 0
+    rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.scheme not in SCHEMES:
+            raise ValueError(f"scheme must be one of {', '.join(SCHEMES)}, got {self.scheme!r}")
+        if self.positions not in _PLACINGS:
+            raise ValueError(f"positions must be one of {', '.join(_PLACINGS)}, got {self.positions!r}")
+        if type(self.budget) is not int or not 0 <= self.budget < 2**32:
+            raise ValueError(f"budget must be a number of triangles, or 0, got {self.budget!r}")
+        if not 0 <= self.rate <= 1000:
+            raise ValueError(f"rate must be from 0 to 1000 frames a second, got {self.rate!r}")
+
+    def chosen(self, options: RefineOptions, /) -> "Refinement":
+        """The same with what was chosen anew."""
+        names = RefineOptions.__annotations__
+        new: dict[str, Any] = {
+            key: value for key, value in options.items() if key in names and value is not None
+        }
+        return replace(self, **new)
+
+
+def chosen(options: RefineOptions, /) -> Refinement | None:
+    """The refinement that options ask for, or None where they name no scheme.
+
+    Raises
+    ------
+    FovealError
+        If they choose how to refine and no scheme.
+    """
+    scheme = options.get("scheme")
+    if scheme is not None:
+        from foveal.refine import Criteria
+
+        return Refinement(cast(Any, scheme), Criteria()).chosen(options)
+    named = [name for name in RefineOptions.__annotations__ if options.get(name) is not None]
+    if named:
+        raise FovealError(f"{' and '.join(named)} tell how to refine; choose a scheme, such as sqrt3, too.")
+    return None
+
+
+def refinement_json(refinement: Refinement, /) -> dict[str, Any]:
+    """As a layer of scene.json and the header of a control mesh have it; angles in degrees."""
+    return {
+        "scheme": refinement.scheme,
+        "criteria": {
+            name: {
+                "iterations": region.iterations,
+                "edge_px": region.edge_px,
+                "bend_degrees": math.degrees(region.bend),
+            }
+            for name in _REGIONS
+            for region in [getattr(refinement.criteria, name)]
+        },
+        "positions": refinement.positions,
+        "budget": refinement.budget,
+        "rate": refinement.rate,
+    }
+
+
+def refinement_of(data: dict[str, Any], where: str, /, *, default: Refinement | None = None) -> Refinement:
+    """Read what `refinement_json` gives; what is missing is as in `default`.
+
+    Raises
+    ------
+    FovealError
+        In a sentence that begins with `where`: no scheme, one that is not known, a number that is none.
+    """
+    from foveal.refine import Criteria, Region
+
+    try:
+        if "scheme" not in data and default is None:
+            raise ValueError('there is no "scheme"')
+        base = default or Refinement(data["scheme"], Criteria())
+        regions = {}
+        for name in _REGIONS:
+            given, was = data.get("criteria", {}).get(name, {}), getattr(base.criteria, name)
+            bend = math.radians(given["bend_degrees"]) if "bend_degrees" in given else was.bend
+            edge_px = float(given.get("edge_px", was.edge_px))
+            regions[name] = Region(given.get("iterations", was.iterations), edge_px, min(bend, math.pi))
+        return Refinement(
+            data.get("scheme", base.scheme),
+            Criteria(**regions),
+            data.get("positions", base.positions),
+            data.get("budget", base.budget),
+            float(data.get("rate", base.rate)),
+        )
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
+        raise FovealError(
+            f"{where}: how it is refined is not told as it should be ({error}). Correct it, or leave it out."
+        ) from error

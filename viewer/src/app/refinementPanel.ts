@@ -1,0 +1,163 @@
+/** The sheet of a refinement: how fine it is where, what it may cost, and how it is shown. */
+import { LEVELS } from "../scene/palette";
+import type { App } from "./app";
+import { make } from "./dom";
+import type { RefinementControl } from "./refinement";
+import type { RefinementChoice } from "./refinementChoice";
+import { Sheet } from "./sheet";
+import type { NumberSetting } from "./slider";
+import { SCHEME_NAMES, WORDS } from "./words";
+
+/** More are never needed: 3^10 triangles for each of the control mesh. */
+const MOST_ITERATIONS = 10;
+
+export function makeRefinementPanel(app: App, control: RefinementControl): Sheet {
+  const sheet = new Sheet("refinement", WORDS.refinement);
+  sheet.add(make("p", { class: "about" }, aboutOf(control)));
+  addColours(sheet, app, control);
+  for (const setting of [...frontOf(control), ...silhouetteOf(control), ...costOf(control)])
+    sheet.addSlider(setting);
+  sheet.addSelection({
+    id: "positions",
+    label: "Vertices",
+    options: [
+      ["control", "Control points"],
+      ["limit", "On the limit surface"],
+    ],
+    get: () => control.wants.positions,
+    set: (positions) => control.choose({ positions }),
+  });
+  sheet.addSwitches(WORDS.inset, [
+    { name: "Show it in a corner", get: () => control.isInsetOn, set: () => control.toggleInset() },
+  ]);
+  sheet.addReset("Back to the scene's own", () => control.reset());
+  return sheet;
+}
+
+function aboutOf({ cages }: RefinementControl): string {
+  return cages
+    .map(
+      ({ refinement, info }) =>
+        `${SCHEME_NAMES[refinement.scheme]} of ${info.triangles.toLocaleString("en")} triangles.`,
+    )
+    .join(" ");
+}
+
+function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void {
+  const hasTriplet = cages.some(({ refinement }) => refinement.scheme !== "sqrt3");
+  const legend = make("div", { class: "legend", role: "img", "aria-label": "Levels from light to dark" });
+  for (const [level, colour] of LEVELS.entries()) {
+    const last = level === LEVELS.length - 1 ? "+" : "";
+    legend.append(make("span", { style: `--swatch: rgb(${colour.join(" ")})` }, `${level}${last}`));
+  }
+  sheet.addSelection({
+    id: "faces",
+    label: "Colour",
+    options: [
+      ["plain", "None"],
+      ["levels", "By level"],
+      ...(hasTriplet ? [["triplet", "Green, red, blue"] as const] : []),
+    ],
+    get: () => app.state.faceColours,
+    set: (faceColours) => {
+      app.change({ faceColours });
+      sheet.refresh();
+    },
+  });
+  sheet.onRefresh(() => {
+    legend.hidden = app.state.faceColours !== "levels";
+  });
+  sheet.add(legend);
+}
+
+type NumberKey = Exclude<keyof RefinementChoice, "positions">;
+
+function iterations(
+  control: RefinementControl,
+  id: NumberKey,
+  label: string,
+  get: () => number,
+): NumberSetting {
+  return {
+    id,
+    label,
+    hint: "",
+    low: 0,
+    high: MOST_ITERATIONS,
+    isLogarithmic: false,
+    isWhole: true,
+    show: (value) => (value === 0 ? "none" : value === 1 ? "1 iteration" : `${value} iterations`),
+    get,
+    set: (value) => control.choose({ [id]: value }),
+  };
+}
+
+function edges(control: RefinementControl, id: NumberKey, label: string, get: () => number): NumberSetting {
+  return {
+    id,
+    label,
+    hint: "",
+    low: 1,
+    high: 100,
+    isLogarithmic: true,
+    hasZero: true,
+    show: (value) => (value === 0 ? "as fine as can be" : `${value} px`),
+    get,
+    set: (value) => control.choose({ [id]: value }),
+  };
+}
+
+function frontOf(control: RefinementControl): NumberSetting[] {
+  const front = () => control.wants.criteria.front;
+  return [
+    iterations(control, "frontIterations", "Towards the eye", () => front().iterations),
+    edges(control, "frontPx", "Edges there", () => front().edge_px),
+  ];
+}
+
+function silhouetteOf(control: RefinementControl): NumberSetting[] {
+  const silhouette = () => control.wants.criteria.silhouette;
+  return [
+    iterations(control, "silhouetteIterations", "On the silhouette", () => silhouette().iterations),
+    edges(control, "silhouettePx", "Edges there", () => silhouette().edge_px),
+    {
+      id: "bend",
+      label: "Flat enough",
+      hint: "Triangles that bend less are not split.",
+      low: 0,
+      high: 30,
+      isLogarithmic: false,
+      show: (value) => (value === 0 ? "never" : `${Number(value.toPrecision(3))}°`),
+      get: () => (control.wants.criteria.front.bend * 180) / Math.PI,
+      set: (bendDegrees) => control.choose({ bendDegrees }),
+    },
+  ];
+}
+
+function costOf(control: RefinementControl): NumberSetting[] {
+  return [
+    {
+      id: "refined-triangles",
+      label: "Triangles at most",
+      hint: "Edges get longer everywhere to keep this.",
+      low: 1000,
+      high: 2e6,
+      isLogarithmic: true,
+      show: (value) => Number(value.toPrecision(2)).toLocaleString("en"),
+      get: () => control.wants.budget,
+      set: (budget) => control.chooseForDevice({ budget }),
+    },
+    {
+      id: "rate",
+      label: "Frames a second",
+      hint: "",
+      low: 5,
+      high: 60,
+      isLogarithmic: false,
+      hasZero: true,
+      show: (value) => (value === 0 ? "as they come" : `at least ${Math.round(value)}`),
+      get: () => control.wants.rate,
+      set: (rate) => control.chooseForDevice({ rate: Math.round(rate) }),
+    },
+  ];
+}

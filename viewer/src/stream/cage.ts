@@ -1,0 +1,29 @@
+/** An opened control mesh: what its file says, and who refines it. */
+import { type CageInfo, parseCage, type Refinement, refinementOf } from "../format/cage";
+import type { OpenFile } from "./file";
+import { openRefinement } from "./openRefinement";
+import type { RefinementSource } from "./refinement";
+
+export interface Cage {
+  readonly file: OpenFile;
+  readonly info: CageInfo;
+  /** As the scene wants it. */
+  readonly refinement: Refinement;
+  readonly source: RefinementSource;
+}
+
+/**
+ * @param live - Address of a server's session, or null for none.
+ * @param layer - What scene.json says of the layer; it goes before what the file says.
+ * @throws Problem in a sentence about the file or the layer.
+ */
+export async function openCage(
+  file: OpenFile,
+  live: string | null,
+  layer: Readonly<Record<string, unknown>>,
+): Promise<Cage> {
+  const info = parseCage(file.container.header, file.source.name);
+  const refinement = refinementOf(layer, "scene.json", info.refinement);
+  const source = await openRefinement(file, refinement.scheme, live);
+  return { file, info, refinement, source };
+}
