@@ -123,6 +123,71 @@ def test_the_mesh_depends_on_the_view_alone(name, seed):
         assert_surface(refined.mesh(), mesh)
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", ["bumpy", "terrain"])
+def test_work_spread_over_frames_ends_in_the_same_mesh(name, seed):
+    mesh = SURFACES[name]()
+    rng = np.random.default_rng(seed)
+    refined = Sqrt3(mesh)
+    criteria = Criteria(Region(5, 12.0), Region(7, 6.0))
+    for frame in range(12):  # it is never done before the camera moves on
+        camera = around(mesh, 0.1 * frame, closeness=0.6)
+        done = refined.update(camera, criteria=criteria, most_splits=int(rng.integers(0, 60)))
+        assert_surface(refined.mesh(), mesh)
+    assert not done.is_done
+    while not refined.update(camera, criteria=criteria, most_splits=50).is_done:
+        pass
+    fresh = Sqrt3(mesh)
+    fresh.update(camera, criteria=criteria)
+    assert_same(refined.mesh(), fresh.mesh())
+
+
+@pytest.mark.parametrize("name", ["tetrahedron", "icosphere", "torus", "bumpy"])
+def test_limits_are_where_two_levels_of_uniform_subdivision_point_to(name):
+    mesh = SURFACES[name]()
+    before, _ = subdivided(mesh.positions, mesh.faces, 3)
+    after, _ = subdivided(mesh.positions, mesh.faces, 4)
+    after = after[: len(before)]
+    valences = np.full(len(before), 6)
+    valences[: len(mesh.positions)] = np.bincount(mesh.faces.reshape(-1))
+    shrink = ((2 + 2 * np.cos(2 * np.pi / valences)) / 9)[:, None]  # (2 cos(pi / n) / 3)^2
+    limits = (after - shrink * before) / (1 - shrink)
+    refined = Sqrt3(mesh)
+    refined.update(around(mesh), criteria=everywhere(3))
+    found = refined.mesh(positions="limit").positions
+    distance, index = KDTree(limits).query(found)
+    assert distance.max() <= 1e-13 * np.linalg.norm(np.ptp(mesh.positions, axis=0))
+    assert len(np.unique(index)) == len(limits)
+
+
+def test_limits_of_a_border_are_those_of_its_cubic_spline():
+    mesh = terrain(4)
+    refined = Sqrt3(mesh)
+    refined.update(around(mesh), criteria=everywhere(0))
+    slots = refined.slots(positions="limit")
+    n = 5
+    side = mesh.positions.reshape(n, n, 3)[0]
+    expected = (side[:-2] + 4 * side[1:-1] + side[2:]) / 6
+    assert np.allclose(slots.positions.reshape(n, n, 3)[0, 1:-1], expected, rtol=0, atol=1e-15)
+
+
+def test_slots_that_did_not_change_stay_where_they_are():
+    mesh = bumpy_sphere(2, seed=3)
+    refined = Sqrt3(mesh)
+    criteria = Criteria(Region(4, 8.0), Region(6, 4.0))
+    refined.update(around(mesh, 0.0), criteria=criteria)
+    before = refined.slots()
+    done = refined.update(around(mesh, 0.02), criteria=criteria)
+    after = refined.slots()
+    count = min(len(before.faces), len(after.faces))
+    changed = (before.faces[:count] != after.faces[:count]).any(axis=1).sum()
+    assert 0 < changed <= 6 * (done.split + done.undone)  # the face's thirds and their mates
+    is_face = after.faces[:, 0] != after.faces[:, 1]
+    assert is_face.sum() == done.faces
+    assert after.levels[is_face].max() == 6
+    assert not after.levels[~is_face].any()
+
+
 @pytest.mark.parametrize("name", SURFACES)
 def test_coarsened_it_is_the_control_mesh_bit_for_bit(name):
     mesh = SURFACES[name]()

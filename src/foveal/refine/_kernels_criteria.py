@@ -8,7 +8,7 @@ bend that is flat enough.
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 EYE, PIXELS, PLANES = 0, 3, 4
 
@@ -23,7 +23,7 @@ ITERATIONS, EDGE, BEND = 0, 1, 2
 BALL = 1.16
 
 
-@kernel
+@lean
 def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, u, v, w):
     """(is wanted, slack) of the triangle a, b, c of a level, at vertices u, v, w: whether to split it.
 
@@ -64,8 +64,9 @@ def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, 
         least = min(least, (mx * nx + my * ny + mz * nz) * scale)
     front, back = 2.0 * low - high, low - 2.0 * high
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
-    # Three times as quick as the eye at most.
-    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) * THIRD)
+    # `low` changes as quickly as the eye moves at most, `high - low` by the normals' distance times that.
+    spread = math.sqrt(max(2.0 - 2.0 * least, 0.0)) if level > 0 else 2.0
+    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
     if level >= limits[kind, ITERATIONS] or 1.0 - least < limits[kind, BEND]:
         return False, trusted(slack, away)
     if limits[kind, EDGE] > 0.0:
@@ -74,7 +75,7 @@ def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, 
     return True, trusted(slack, away)
 
 
-@kernel
+@lean
 def trusted(slack, away):
     """A slack that rounding cannot have made too large."""
     return 0.999 * slack - 1e-12 * away

@@ -6,159 +6,133 @@ Based on: L. Kobbelt. √3-subdivision. SIGGRAPH 2000.
 
 import math
 
-import numpy as np
+from foveal.base.jit import lean
 
-from foveal.base.jit import kernel
-
-from ._kernels_sqrt3_layout import (
-    BORDER,
-    FACES,
-    FREE_FACES,
-    FREE_VERTICES,
-    NONE,
-    UNMEASURED,
-    VERTICES,
-    generation,
-    half,
-    whole,
-)
+from ._kernels_sqrt3_layout import BORDER, NONE, PARENT, UNMEASURED, generation, half, whole
 from ._kernels_sqrt3_measure import measure_corners
 from ._kernels_sqrt3_points import middle, near_point, position
+from ._kernels_sqrt3_slots import put, relink, set_state, take_face, take_vertex
 
 
-@kernel
-def take_face(net):
-    """A free face slot."""
-    if net.counts[FREE_FACES] > 0:
-        net.counts[FREE_FACES] -= 1
-        return np.int64(net.free_faces[net.counts[FREE_FACES]])
-    net.counts[FACES] += 1
-    return np.int64(net.counts[FACES] - 1)
-
-
-@kernel
-def take_vertex(net):
-    """A free vertex slot."""
-    if net.counts[FREE_VERTICES] > 0:
-        net.counts[FREE_VERTICES] -= 1
-        return np.int64(net.free_vertices[net.counts[FREE_VERTICES]])
-    net.counts[VERTICES] += 1
-    return np.int64(net.counts[VERTICES] - 1)
-
-
-@kernel
-def put(net, f, a, b, c, x, y, z, state):
-    """Write a face: corners, faces beyond, state."""
-    net.faces[f, 0], net.faces[f, 1], net.faces[f, 2] = a, b, c
-    net.beside[f, 0], net.beside[f, 1], net.beside[f, 2] = x, y, z
-    net.states[f] = state
-    net.face_until[f] = 0.0
-
-
-@kernel
-def relink(net, n, u, f):
-    """Tell face n that f is beyond its edge that begins at u."""
-    if n != NONE:
-        for k in range(3):
-            if net.faces[n, k] == u:
-                net.beside[n, k] = f
-
-
-@kernel
+@lean
 def flip(net, h, n):
     """Two halves of one old edge (w, x) become two faces of the next generation.
 
     Half h = (w, x, b) becomes (w, c, b), its mate n = (x, w, c) becomes (x, b, c).
     """
-    w, x, b, c = net.faces[h, 0], net.faces[h, 1], net.faces[h, 2], net.faces[n, 2]
-    h1, h2, n1, n2 = net.beside[h, 1], net.beside[h, 2], net.beside[n, 1], net.beside[n, 2]
-    state = net.states[h] + 1
+    one, two, vertices = net.faces[h], net.faces[n], net.vertices
+    w, x, b, c = one.corners[0], one.corners[1], one.corners[2], two.corners[2]
+    h1, h2, n1, n2 = one.beside[1], one.beside[2], two.beside[1], two.beside[2]
+    state = one.state + 1
     put(net, h, w, c, b, n1, n, h2, state)
     put(net, n, x, b, c, h1, h, n2, state)
     relink(net, n1, c, h)
     relink(net, h1, b, n)
-    net.around[w], net.around[x], net.around[b], net.around[c] = h, n, h, h
+    vertices[w].around, vertices[x].around, vertices[b].around, vertices[c].around = h, n, h, h
 
 
-@kernel
+@lean
 def settle(net, h):
     """A new half becomes a face of the next generation, if nothing is beyond its old edge or a half is."""
-    n = net.beside[h, 0]
+    face = net.faces[h]
+    n = face.beside[0]
     if n == NONE:
-        net.states[h] += 1
-        net.face_until[h] = 0.0
-    elif net.states[n] == net.states[h] and net.beside[n, 0] == h:
+        set_state(net, h, face.state + 1)
+    elif net.faces[n].state == face.state and net.faces[n].beside[0] == h:
         flip(net, h, n)
 
 
-@kernel
+@lean
+def parents(net, u, v, w, level):
+    """Flags that say which corners of a face are of its own generation."""
+    if level == 0:
+        return 0
+    return (
+        (PARENT if net.births[u] == level else 0)
+        | (2 * PARENT if net.births[v] == level else 0)
+        | (4 * PARENT if net.births[w] == level else 0)
+    )
+
+
+@lean
+def born(net, a, b, c, pair, level, kind):
+    """A new vertex, of the face a, b, c of a level; its flags say but its parents."""
+    v = take_vertex(net)
+    vertex = net.vertices[v]
+    vertex.triple[0], vertex.triple[1], vertex.triple[2], vertex.pair = a, b, c, pair
+    vertex.kind = kind
+    net.births[v] = level + 1
+    net.flags[v] = parents(net, a, b, c, level)
+    return v
+
+
+@lean
 def split(net, f):
     """Split a face of generation k; returns the new vertex, or the first of two on a border."""
-    level = generation(net.states[f])
-    if level % 2 == 1 and net.beside[f, 0] == NONE:
+    face = net.faces[f]
+    level = generation(face.state)
+    if level % 2 == 1 and face.beside[0] == NONE:
         return cut(net, f)
-    u, v, w = net.faces[f, 0], net.faces[f, 1], net.faces[f, 2]
+    u, v, w = face.corners[0], face.corners[1], face.corners[2]
     if level > 0:
         measure_corners(net, f)
-    n0, n1, n2 = net.beside[f, 0], net.beside[f, 1], net.beside[f, 2]
-    b = take_vertex(net)
-    x, y, z = middle(net, f, level)
-    net.points[b, 0, 0], net.points[b, 0, 1], net.points[b, 0, 2] = x, y, z
-    net.births[b], net.kinds[b] = level + 1, UNMEASURED
-    net.triples[b, 0], net.triples[b, 1], net.triples[b, 2], net.pairs[b] = u, v, w, NONE
-    net.points[b, 1, 0] = math.nan  # unmeasured: whoever reads it would show
+    n0, n1, n2 = face.beside[0], face.beside[1], face.beside[2]
+    b = born(net, u, v, w, NONE, level, UNMEASURED)
+    vertex = net.vertices[b]
+    vertex.born[0], vertex.born[1], vertex.born[2] = middle(net, f, level)
+    vertex.limit[0] = math.nan  # unmeasured: whoever reads it would show
     g, h = take_face(net), take_face(net)
     put(net, f, u, v, b, n0, g, h, half(level))
     put(net, g, v, w, b, n1, h, f, half(level))
     put(net, h, w, u, b, n2, f, g, half(level))
     relink(net, n1, w, g)
     relink(net, n2, u, h)
-    net.around[u], net.around[v], net.around[w], net.around[b] = f, g, h, f
+    net.vertices[u].around, net.vertices[v].around, net.vertices[w].around, vertex.around = f, g, h, f
     settle(net, f)
     settle(net, g)
     settle(net, h)
     return b
 
 
-@kernel
+@lean
 def cut(net, f):
     """Split a face of odd generation, in three from its border edge; returns the first new vertex."""
-    level = generation(net.states[f])
-    a, b, c = net.faces[f, 0], net.faces[f, 1], net.faces[f, 2]
+    face = net.faces[f]
+    level = generation(face.state)
+    a, b, c = face.corners[0], face.corners[1], face.corners[2]
     measure_corners(net, f)
-    n1, n2 = net.beside[f, 1], net.beside[f, 2]
+    n1, n2 = face.beside[1], face.beside[2]
     ax, ay, az = position(net, a, level + 1)
     bx, by, bz = position(net, b, level + 1)
     px, py, pz = near_point(net, a, b, level, True)
     qx, qy, qz = near_point(net, a, b, level, False)
-    p, q = take_vertex(net), take_vertex(net)
-    net.pairs[p], net.pairs[q] = q, p
+    p = born(net, a, b, c, NONE, level, BORDER)
+    q = born(net, a, b, c, p, level, BORDER)
+    net.vertices[p].pair = q
     put_border_point(net, p, ax, ay, az, px, py, pz, qx, qy, qz)
     put_border_point(net, q, px, py, pz, qx, qy, qz, bx, by, bz)
-    for v in (p, q):
-        net.births[v], net.kinds[v] = level + 1, BORDER
-        net.triples[v, 0], net.triples[v, 1], net.triples[v, 2] = a, b, c
-        for axis in range(3):
-            net.normals[v, axis] = net.normals[c, axis]
+    for axis in range(3):
+        net.normals[p, axis] = net.normals[q, axis] = net.normals[c, axis]
     g, h = take_face(net), take_face(net)
     put(net, f, c, p, q, g, NONE, h, whole(level + 1))
     put(net, g, c, a, p, n2, NONE, f, half(level))
     put(net, h, b, c, q, n1, f, NONE, half(level))
     relink(net, n1, c, h)
     relink(net, n2, a, g)
-    net.around[a], net.around[b], net.around[c], net.around[p], net.around[q] = g, h, f, f, f
+    vertices = net.vertices
+    vertices[a].around, vertices[b].around, vertices[c].around = g, h, f
+    vertices[p].around, vertices[q].around = f, f
     settle(net, g)
     settle(net, h)
     return p
 
 
-@kernel
+@lean
 def put_border_point(net, v, px, py, pz, x, y, z, qx, qy, qz):
     """The three vectors of a border vertex between p and q."""
-    net.points[v, 0, 0], net.points[v, 0, 1], net.points[v, 0, 2] = x, y, z
-    net.points[v, 1, 0], net.points[v, 1, 1], net.points[v, 1, 2] = qx - px, qy - py, qz - pz
-    net.points[v, 2, 0], net.points[v, 2, 1], net.points[v, 2, 2] = (
-        px - 2.0 * x + qx,
-        py - 2.0 * y + qy,
-        pz - 2.0 * z + qz,
-    )
+    vertex = net.vertices[v]
+    vertex.born[0], vertex.born[1], vertex.born[2] = x, y, z
+    vertex.limit[0], vertex.limit[1], vertex.limit[2] = qx - px, qy - py, qz - pz
+    vertex.third[0] = px - 2.0 * x + qx
+    vertex.third[1] = py - 2.0 * y + qy
+    vertex.third[2] = pz - 2.0 * z + qz

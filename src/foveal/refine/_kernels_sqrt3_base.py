@@ -3,36 +3,36 @@
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_sqrt3_layout import BORDER, INSIDE
 
 
-@kernel
-def base_points(positions, starts, ring, is_border, points, normals, kinds, shrinks):
+@lean
+def base_points(positions, starts, ring, is_border, vertices, normals, shrinks):
     """The vectors and normals of the control mesh's vertices."""
     for v in range(len(positions)):
         begin, end = starts[v], starts[v + 1]
         n = end - begin
         for axis in range(3):
-            points[v, 0, axis] = positions[v, axis]
+            vertices[v].born[axis] = positions[v, axis]
         if n == 0:
             continue
         if is_border[v]:
-            kinds[v] = BORDER
+            vertices[v].kind = BORDER
             p, q = ring[end - 1], ring[begin]
             for axis in range(3):
-                points[v, 1, axis] = positions[q, axis] - positions[p, axis]
-                points[v, 2, axis] = positions[p, axis] - 2.0 * positions[v, axis] + positions[q, axis]
+                vertices[v].limit[axis] = positions[q, axis] - positions[p, axis]
+                vertices[v].third[axis] = positions[p, axis] - 2.0 * positions[v, axis] + positions[q, axis]
         else:
-            kinds[v] = INSIDE
+            vertices[v].kind = INSIDE
             share = (4.0 - 2.0 * math.cos(2.0 * math.pi / n)) / 9.0
             shrinks[v] = 2.0 / 3.0 - share
             for axis in range(3):
                 total = 0.0
                 for i in range(begin, end):
                     total += positions[ring[i], axis]
-                points[v, 1, axis] = (positions[v, axis] + 3.0 * share * total / n) / (1.0 + 3.0 * share)
+                vertices[v].limit[axis] = (positions[v, axis] + 3.0 * share * total / n) / (1.0 + 3.0 * share)
         sx = sy = sz = tx = ty = tz = 0.0
         if is_border[v]:  # a fan's mean normal: the limit's tangent across the border is not known
             for i in range(begin, end - 1):

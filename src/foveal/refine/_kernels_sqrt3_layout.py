@@ -1,13 +1,12 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """The packed words of a √3 refinement, by name.
 
-A face is `faces[f]` (three vertices, counter-clockwise), `beside[f]` (the face beyond edge k, from corner
-k to k + 1, or NONE) and `states[f]`. A face of generation k is a triangle of uniform subdivision's level
-k. A half of generation k is a third of a split face whose old edge, its edge 0, could not be flipped yet,
-since the face beyond is not split; its corner 2 is the new vertex.
+A face has three corners, counter-clockwise, and a state. A face of generation k is a triangle of uniform
+subdivision's level k. A half of generation k is a third of a split face whose old edge, its edge 0, could not
+be flipped yet, since the face beyond is not split; its corner 2 is the new vertex.
 """
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 NONE = -1
 
@@ -17,32 +16,39 @@ FREE = -1
 #: Kinds of vertices.
 INSIDE, LATE, BORDER, UNMEASURED = 0, 1, 2, 3
 
-#: Flags of vertices: its birth face is to be split for itself; for finer ones; it meets the criteria.
-WANTED, NEEDED, MEETS = 1, 2, 4
+#: Flags of vertices: its birth face is to be split for itself; for finer ones; it meets the criteria; and
+#: which corners of the birth face are its parents, 8 << k: those born with it.
+WANTED, NEEDED, MEETS, PARENTS, PARENT = 1, 2, 4, 56, 8
+
+#: Slots ever used, how many of them are free, the first free ones; the queue's first place and length.
+FACES, VERTICES, FREE_FACES, FREE_VERTICES, FREE_FACE, FREE_VERTEX, FIRST, QUEUED = 0, 1, 2, 3, 4, 5, 6, 7
 
 
-@kernel
+@lean
 def generation(state):
     """Of a face or a half."""
     return state >> 1
 
 
-@kernel
+@lean
 def is_half(state):
     """Whether it is a half, if it is anything."""
     return (state & 1) == 1
 
 
-@kernel
+@lean
 def whole(level):
     """The state of a face of a generation."""
     return 2 * level
 
 
-@kernel
+@lean
 def half(level):
     """The state of a half of a generation."""
     return 2 * level + 1
 
 
-FACES, VERTICES, FREE_FACES, FREE_VERTICES = 0, 1, 2, 3
+@lean
+def corner_at(face, v):
+    """Which corner of a face vertex v is."""
+    return 0 if face.corners[0] == v else (1 if face.corners[1] == v else 2)

@@ -8,116 +8,143 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
-from ._kernels_sqrt3_layout import INSIDE, LATE, NONE, UNMEASURED, generation, half
+from ._kernels_sqrt3_layout import INSIDE, LATE, NONE, UNMEASURED, corner_at, generation, half
 from ._kernels_sqrt3_points import THIRD, near_point, position, virtual_apex
 
 HALF_ROOT3 = 0.8660254037844386
-COSINES = (1.0, 0.5, -0.5, -1.0, -0.5, 0.5)
-SINES = (0.0, HALF_ROOT3, HALF_ROOT3, 0.0, -HALF_ROOT3, -HALF_ROOT3)
+
+#: (cos, sin) of the sixths of a turn.
+SIXTHS = np.array(
+    [
+        (1.0, 0.0),
+        (0.5, HALF_ROOT3),
+        (-0.5, HALF_ROOT3),
+        (-1.0, 0.0),
+        (-0.5, -HALF_ROOT3),
+        (0.5, -HALF_ROOT3),
+    ]
+)
 
 #: (4 - 2 cos(2 pi / n)) / 9 for n = 3, 4, 5: written out, since cosines differ between machines.
-LATE_SHARES = (0.0, 0.0, 0.0, 5.0 / 9.0, 4.0 / 9.0, 0.3757740012500117)
+LATE_SHARES = np.array([0.0, 0.0, 0.0, 5.0 / 9.0, 4.0 / 9.0, 0.3757740012500117])
+
+#: Nothing gathered yet; see `gather`.
+NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@kernel
+@lean
 def measure_corners(net, f):
     """Measure the corners born with the face f, before it is split: then their rings are still at hand."""
-    level = generation(net.states[f])
+    level = generation(net.faces[f].state)
     for k in range(3):
-        v = np.int64(net.faces[f, k])
-        if net.births[v] == level and net.kinds[v] == UNMEASURED:
+        v = np.int64(net.faces[f].corners[k])
+        if net.births[v] == level and net.vertices[v].kind == UNMEASURED:
             measure(net, v)
 
 
-@kernel
+@lean
 def part_at(net, v, u):
     """The face at v in which u follows v: the half of v's birth face from u, or its flipped part there."""
-    f = np.int64(net.around[v])
+    f = np.int64(net.vertices[v].around)
     for _ in range(6):
-        k = 0 if net.faces[f, 0] == v else (1 if net.faces[f, 1] == v else 2)
-        if net.faces[f, (k + 1) % 3] == u:
+        k = corner_at(net.faces[f], v)
+        if net.faces[f].corners[(k + 1) % 3] == u:
             return f
-        f = np.int64(net.beside[f, (k + 2) % 3])
+        f = np.int64(net.faces[f].beside[(k + 2) % 3])
     return f
 
 
-@kernel
+@lean
+def beyond(net, b, u):
+    """(end, x, y, z) of what follows corner u in the ring of vertex b on the level of its birth.
+
+    What begins at u around b is the half (u, next, b), its flipped part (u, apex, b), or a border's face:
+    then `end` is the next corner, else NONE.
+    """
+    level = net.births[b]
+    f = part_at(net, b, u)
+    face = net.faces[f]
+    c = np.int64(face.corners[1])
+    if face.state == half(level - 1):
+        x, y, z = virtual_apex(net, f)
+        return NONE, x, y, z
+    if face.beside[0] == NONE and face.corners[2] == b and net.births[c] != level:
+        return c, 0.0, 0.0, 0.0
+    apex = net.vertices[c]
+    return NONE, apex.born[0], apex.born[1], apex.born[2]
+
+
+@lean
+def gather(sums, i, x, y, z):
+    """Add vertex i of a ring of six to (its sum, its two tangents)."""
+    a, b, c, d, e, f, g, h, k = sums
+    s, t = SIXTHS[i, 0], SIXTHS[i, 1]
+    return a + x, b + y, c + z, d + s * x, e + s * y, f + s * z, g + t * x, h + t * y, k + t * z
+
+
+@lean
 def measure(net, b):
     """The limit and normal of vertex b, none of whose faces is finer than itself; on a border it is LATE."""
+    vertex = net.vertices[b]
     level = net.births[b]
-    ring = np.empty((6, 3))
-    ids, ends = np.empty(6, np.int64), np.empty(6, np.int64)  # of the border edge that follows, or NONE
-    n = 0
+    sums = NOTHING
+    borders = 0
     for i in range(3):
-        u = np.int64(net.triples[b, i])
+        u = np.int64(vertex.triple[i])
         x, y, z = position(net, u, level)
-        ring[n, 0], ring[n, 1], ring[n, 2] = x, y, z
-        ids[n], ends[n] = u, NONE
-        n += 1
-        # What begins at u around b: the half (u, next, b), its flipped face (u, apex, b), or a border's face.
-        part = part_at(net, b, u)
-        if net.states[part] == half(level - 1):
-            x, y, z = virtual_apex(net, part)
-        elif (
-            net.beside[part, 0] == NONE
-            and net.faces[part, 2] == b
-            and net.births[net.faces[part, 1]] != level
-        ):
-            ends[n - 1] = net.faces[part, 1]
-            continue
+        sums = gather(sums, 2 * i, x, y, z)
+        end, x, y, z = beyond(net, b, u)
+        if end == NONE:
+            sums = gather(sums, 2 * i + 1, x, y, z)
         else:
-            c = net.faces[part, 1]
-            x, y, z = net.points[c, 0, 0], net.points[c, 0, 1], net.points[c, 0, 2]
-        ring[n, 0], ring[n, 1], ring[n, 2] = x, y, z
-        ends[n] = NONE
-        n += 1
-    net.kinds[b] = INSIDE
-    if n == 6:
-        for axis in range(3):
-            total = 0.0
-            for i in range(6):
-                total += ring[i, axis]
-            net.points[b, 1, axis] = 0.5 * (net.points[b, 0, axis] + total / 6.0)
-        ring_normal(net, b, ring)
-        return
-    net.kinds[b] = LATE
-    share = LATE_SHARES[n]
-    for axis in range(3):
-        total = 0.0
-        for i in range(n):
-            total += ring[i, axis]
-        net.points[b, 2, axis] = (1.0 - share) * net.points[b, 0, axis] + share * total / n
-    later = np.empty((6, 3))
-    m = 0
-    for i in range(n):
-        j = i + 1 if i + 1 < n else 0
-        if ends[i] != NONE:  # a border edge follows
-            for is_first in (True, False):
-                x, y, z = near_point(net, ids[i], ends[i], level, is_first)
-                later[m, 0], later[m, 1], later[m, 2] = x, y, z
-                m += 1
-        else:
-            for axis in range(3):
-                later[m, axis] = (net.points[b, 0, axis] + ring[i, axis] + ring[j, axis]) * THIRD
-            m += 1
-    for axis in range(3):
-        total = 0.0
-        for i in range(6):
-            total += later[i, axis]
-        net.points[b, 1, axis] = 0.5 * (net.points[b, 2, axis] + total / 6.0)
-    ring_normal(net, b, later)
+            borders += 1
+    x, y, z = vertex.born[0], vertex.born[1], vertex.born[2]
+    vertex.kind = INSIDE
+    if borders > 0:
+        share = LATE_SHARES[6 - borders]
+        x = (1.0 - share) * x + share * sums[0] / (6 - borders)
+        y = (1.0 - share) * y + share * sums[1] / (6 - borders)
+        z = (1.0 - share) * z + share * sums[2] / (6 - borders)
+        vertex.kind = LATE
+        vertex.third[0], vertex.third[1], vertex.third[2] = x, y, z
+        sums = later_ring(net, b)
+    vertex.limit[0] = 0.5 * (x + sums[0] / 6.0)
+    vertex.limit[1] = 0.5 * (y + sums[1] / 6.0)
+    vertex.limit[2] = 0.5 * (z + sums[2] / 6.0)
+    ring_normal(net, b, sums)
 
 
-@kernel
-def ring_normal(net, v, ring):
+@lean
+def later_ring(net, b):
+    """What is gathered of the ring of vertex b one level after its birth, when it has grown to six."""
+    vertex = net.vertices[b]
+    level = net.births[b]
+    bx, by, bz = vertex.born[0], vertex.born[1], vertex.born[2]
+    sums = NOTHING
+    for i in range(3):
+        u, w = np.int64(vertex.triple[i]), np.int64(vertex.triple[(i + 1) % 3])
+        end, x, y, z = beyond(net, b, u)
+        if end == NONE:
+            ux, uy, uz = position(net, u, level)
+            wx, wy, wz = position(net, w, level)
+            sums = gather(sums, 2 * i, (bx + ux + x) * THIRD, (by + uy + y) * THIRD, (bz + uz + z) * THIRD)
+            sums = gather(
+                sums, 2 * i + 1, (bx + x + wx) * THIRD, (by + y + wy) * THIRD, (bz + z + wz) * THIRD
+            )
+        else:  # a border edge follows, which is cut in three
+            x, y, z = near_point(net, u, end, level, True)
+            sums = gather(sums, 2 * i, x, y, z)
+            x, y, z = near_point(net, u, end, level, False)
+            sums = gather(sums, 2 * i + 1, x, y, z)
+    return sums
+
+
+@lean
+def ring_normal(net, v, sums):
     """The normal of the limit surface at a vertex of valence six, by its ring's tangents."""
-    sx = sy = sz = tx = ty = tz = 0.0
-    for i in range(6):
-        c, s = COSINES[i], SINES[i]
-        sx, sy, sz = sx + c * ring[i, 0], sy + c * ring[i, 1], sz + c * ring[i, 2]
-        tx, ty, tz = tx + s * ring[i, 0], ty + s * ring[i, 1], tz + s * ring[i, 2]
+    _, _, _, sx, sy, sz, tx, ty, tz = sums
     x, y, z = sy * tz - sz * ty, sz * tx - sx * tz, sx * ty - sy * tx
     length = math.sqrt(x * x + y * y + z * z)
     scale = 1.0 / length if length > 0.0 else 0.0

@@ -2,19 +2,15 @@
 
 from typing import Literal, Protocol, get_args
 
-import numpy as np
-
 from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from . import _kernels_sqrt3_update as kernels
-from ._kernels_sqrt3_layout import BORDER, UNMEASURED
 from .criteria import Criteria
 from .slots import Placing, Slots
 from .sqrt3 import Sqrt3, Update
 
-__all__ = ["SCHEMES", "Refiner", "Scheme", "refiner", "slots_of"]
+__all__ = ["SCHEMES", "Refiner", "Scheme", "refiner"]
 
 Scheme = Literal["sqrt3", "loop", "butterfly"]
 SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
@@ -27,8 +23,12 @@ class Refiner(Protocol):
         """Bring the mesh to what `camera` sees."""
         ...
 
-    def mesh(self) -> TriMesh:
+    def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is."""
+        ...
+
+    def slots(self, *, positions: Placing = "control") -> Slots:
+        """The same slot by slot."""
         ...
 
 
@@ -66,30 +66,3 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
         raise FovealError(f"{name}: the scheme {scheme!r} is not there yet. Choose sqrt3.")
     made: Refiner = rgb(mesh, scheme=scheme, name=name)
     return made
-
-
-def slots_of(refined: Refiner, /, *, positions: Placing = "control") -> Slots:
-    """The slots of a refinement as it is; views where they can be, so valid until its next update."""
-    if hasattr(refined, "slots"):
-        slots: Slots = refined.slots(positions=positions)
-        return slots
-    assert isinstance(refined, Sqrt3)
-    net = refined._net
-    count, vertices = int(net.counts[0]), int(net.counts[1])
-    states = net.states[:count]
-    is_used = states >= 0
-    faces = np.where(is_used[:, None], net.faces[:count], 0)
-    places = net.points[:vertices, 0].copy()
-    if positions == "limit":
-        kinds, points = net.kinds[:vertices, None], net.points[:vertices]
-        ends = np.where(kinds == BORDER, points[:, 0] + points[:, 2] / 6, points[:, 1])
-        places = np.where(kinds == UNMEASURED, places, ends)
-    else:
-        kernels.place(net, np.empty(vertices, np.int8), places)
-    return Slots(
-        faces,
-        places,
-        net.points[:vertices, 0],
-        np.where(is_used, states >> 1, 0).astype(np.uint8),
-        np.zeros(count, np.uint8),
-    )

@@ -18,7 +18,7 @@ from foveal.view.camera import Camera
 
 from .criteria import Criteria, Region
 from .pace import Pace, coarser, factor
-from .scheme import Scheme, refiner, slots_of
+from .scheme import Scheme, refiner
 from .wire import Buffers, Head, Request, buffers, message
 
 __all__ = ["MOST_TRIANGLES", "Session", "origin_of", "warm"]
@@ -158,7 +158,7 @@ class Session:
         return self._faces << 2 * most > 4 * allowed  # an iteration is at most four triangles for one
 
     def _message(self, request: Request, milliseconds: float) -> bytes:
-        new = buffers(slots_of(self._refined, positions=request.positions), self.origin)
+        new = buffers(self._refined.slots(positions=request.positions), self.origin)
         is_anew = request.seen == 0 or len(new.faces) < len(self._sent.faces)
         self._base = 0 if is_anew else self._sequence
         head = Head(

@@ -5,9 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from foveal.mesh.trimesh import TriMesh
-
-__all__ = ["Placing", "Slots", "mesh_of"]
+__all__ = ["Placing", "Slots"]
 
 Placing = Literal["control", "limit"]
 """Where vertices are shown: as subdivision has them on their faces' level, or where they go in the limit."""
@@ -36,11 +34,13 @@ class Slots(NamedTuple):
     levels: NDArray[np.uint8]
     colours: NDArray[np.uint8]
 
-
-def mesh_of(slots: Slots, /) -> TriMesh:
-    """The mesh in slots, without those that are free; vertices and faces in the order of their slots."""
-    faces = slots.faces[(slots.faces != 0).any(axis=1)]
-    is_used = np.zeros(len(slots.positions), np.bool_)
-    is_used[faces] = True
-    index = np.cumsum(is_used, dtype=np.int32) - 1
-    return TriMesh(slots.positions[is_used], index[faces].astype(np.int32))
+    @classmethod
+    def empty(cls, faces: int, vertices: int, /) -> "Slots":
+        """Room for so many faces, all free and green, and vertices."""
+        return cls(
+            np.zeros((faces, 3), np.int32),
+            np.zeros((vertices, 3)),
+            np.zeros((vertices, 3)),
+            np.zeros(faces, np.uint8),
+            np.zeros(faces, np.uint8),
+        )

@@ -14,15 +14,21 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from . import _kernels_sqrt3_base as base_kernels
+from . import _kernels_sqrt3_show as show
 from . import _kernels_sqrt3_update as kernels
+from ._kernels_sqrt3_layout import FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
 from .cage import Cage
 from .criteria import MAX_LEVEL, Criteria, view_of
 from .net import Net
+from .slots import Placing, Slots
 
 __all__ = ["Sqrt3", "Update", "sqrt3"]
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
 _FACES, _VERTICES = 1 << 16, 1 << 15
+
+#: Of the mesh's size: how far the view may move before all is asked anew.
+_FAR = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +41,15 @@ class Update:
         Of the mesh now.
     split, undone : int
         Faces that were split, and splits that were undone.
+    is_done : bool
+        False if there was more to split than was allowed.
     """
 
     faces: int
     vertices: int
     split: int
     undone: int
+    is_done: bool = True
 
 
 class Sqrt3:
@@ -77,26 +86,23 @@ class Sqrt3:
         count, faces = len(cage.positions), len(cage.faces)
         net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
         net.counts[:2] = faces, count
-        net.faces[:faces], net.beside[:faces] = cage.faces, cage.beside
-        net.around[cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
+        net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        net.vertices["triple"][:count] = net.vertices["pair"][:count] = -1
         base_kernels.base_points(
-            cage.positions,
-            cage.starts,
-            cage.ring,
-            cage.is_border,
-            net.points,
-            net.normals,
-            net.kinds,
-            net.shrinks,
+            cage.positions, cage.starts, cage.ring, cage.is_border, net.vertices, net.normals, net.shrinks
         )
         self._net = net
         low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
         # All levels lie in the control mesh's convex hull, so in its box.
         self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-        self._drift = 1.0
+        self._size = float(np.linalg.norm(high - low))
+        self._drift = self._size
         self._view, self._limits = np.zeros(24), np.zeros((3, 3))
 
-    def update(self, camera: Camera, /, *, criteria: Criteria | None = None) -> Update:
+    def update(
+        self, camera: Camera, /, *, criteria: Criteria | None = None, most_splits: int | None = None
+    ) -> Update:
         """Bring the mesh to what `camera` sees, from where it is.
 
         Parameters
@@ -104,63 +110,76 @@ class Sqrt3:
         camera : Camera
             In the space of the mesh: of a placed model move the camera, inversely.
         criteria : Criteria, optional
+        most_splits : int, optional
+            Stop after about so many, with a mesh that is whole but not yet as fine as wanted. Further updates
+            go on, and end in the very mesh that one without this limit makes.
         """
         view, limits = view_of(camera), (criteria or Criteria()).limits()
+        is_same = np.array_equal(view, self._view) and np.array_equal(limits, self._limits)
+        # Of the same view the rest is done: what was forced for faces not split yet is not to be undone.
+        undone = 0 if is_same else self._coarsen(view, limits)
+        before = self._vertices()
+        most = before + most_splits if most_splits is not None else np.iinfo(np.int64).max
+        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
+        while not kernels.refine(self._net, most, chain, view, limits, self._drift):
+            self._net = self._net.grown(2 * len(self._net.faces), 2 * len(self._net.vertices))
+        counts, vertices = self._net.counts, self._vertices()
+        return Update(
+            int(counts[FACES] - counts[FREE_FACES]),
+            vertices,
+            vertices - before,
+            undone,
+            bool(counts[QUEUED] == 0),
+        )
+
+    def _coarsen(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> int:
+        """Undo what a view does not need, and let faces wait that have to be asked."""
         self._move(view, limits)
         net, drift = self._net, self._drift
-        count = int(net.counts[1])
-        order = np.empty(count, np.int32)
+        order = np.empty(int(net.counts[VERTICES]), np.int32)
         starts = np.empty(MAX_LEVEL + 3, np.int64)
-        order = order[: kernels.sort_by_birth(net.births, count, starts, order)]
-        kernels.review(net, order, view, limits, drift)
-        undone = int(kernels.coarsen(net, order))
-        before = self._vertices()
-        self._refine(view, limits)
-        vertices = self._vertices()
-        return Update(int(self._net.counts[0] - self._net.counts[2]), vertices, vertices - before, undone)
+        count = kernels.sort_by_birth(net.births, len(order), starts, order)
+        kernels.review(net, order, count, view, limits, drift)
+        undone = int(kernels.coarsen(net, order, count))
+        kernels.wake_expired(net, drift)
+        return undone
 
     def _vertices(self) -> int:
-        return int(self._net.counts[1] - self._net.counts[3])
+        return int(self._net.counts[VERTICES] - self._net.counts[FREE_VERTICES])
 
     def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
         """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
-        if not np.array_equal(limits, self._limits) or view[3] != self._view[3]:
-            self._net.face_until[:] = 0.0
-            self._net.vertex_until[:] = 0.0
-        else:
-            planes = (view[4:] - self._view[4:]).reshape(5, 4)
-            moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
-            self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
+        planes = (view[4:] - self._view[4:]).reshape(5, 4)
+        moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
+        self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
+        is_other = not np.array_equal(limits, self._limits) or view[3] != self._view[3]
+        # Kept in 32 bits, the drift has to begin anew before a slack is nothing beside it.
+        if is_other or self._drift > _FAR * self._size:
+            self._net.faces["until"] = self._net.vertices["until"] = 0.0
+            self._drift = self._size
         self._view, self._limits = view, limits
 
-    def _refine(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
-        net, drift = self._net, self._drift
-        queue, queued = np.empty(len(net.faces), np.int32), np.zeros(len(net.faces), np.bool_)
-        ends = np.array([0, kernels.waiting(net, drift, queue, queued)], np.int64)
-        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
-        while not kernels.refine(net, queue, ends, queued, chain, view, limits, drift):
-            self._net = net = net.grown(2 * len(net.faces), 2 * len(net.points))
-            rest = np.concatenate([queue[ends[0] :], queue[: ends[0]]])[: ends[1]]
-            queue = np.empty(len(net.faces), np.int32)
-            queue[: len(rest)] = rest
-            queued = np.concatenate([queued, np.zeros(len(queue) - len(queued), np.bool_)])
-            ends[0] = 0
-
-    def mesh(self) -> TriMesh:
+    def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
-        net = self._net
-        faces = net.faces[: net.counts[0]][net.states[: net.counts[0]] >= 0]
-        count = int(net.counts[1])
-        positions = np.empty((count, 3))
-        kernels.place(net, np.empty(count, np.int8), positions)
-        is_used = net.births[:count] >= 0
+        slots = self.slots(positions=positions)
+        is_face = self._net.faces["state"][: len(slots.faces)] >= 0
+        is_used = self._net.births[: len(slots.positions)] >= 0
         index = np.cumsum(is_used, dtype=np.int32) - 1
-        return TriMesh(positions[is_used], index[faces].astype(np.int32))
+        return TriMesh(slots.positions[is_used], index[slots.faces[is_face]].astype(np.int32))
+
+    def slots(self, *, positions: Placing = "control") -> Slots:
+        """The mesh as it is, slot by slot: what did not change since the last time is where it was."""
+        faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
+        slots = Slots.empty(faces, vertices)
+        highest = np.empty(vertices, np.int8)
+        show.show_faces(self._net, slots.faces, slots.levels, highest)
+        show.show_vertices(self._net, positions == "limit", highest, slots.positions, slots.starts)
+        return slots
 
     @property
     def bytes_used(self) -> int:
         """What the arrays take for the slots in use, all told."""
-        faces, vertices = int(self._net.counts[0]), int(self._net.counts[1])
+        faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
         return sum(
             a.nbytes // len(a) * (faces if len(a) == len(self._net.faces) else min(vertices, len(a)))
             for a in self._net

@@ -92,12 +92,11 @@ def refine(
 def refined(mesh: TriMesh, refinement: Refinement, camera: Camera, /, *, name: str = "mesh") -> TriMesh:
     """A control mesh refined for one view, within its budget."""
     from foveal.refine.pace import update_within
-    from foveal.refine.scheme import refiner, slots_of
-    from foveal.refine.slots import mesh_of
+    from foveal.refine.scheme import refiner
 
     live = refiner(mesh, scheme=refinement.scheme, name=name)
     update_within(live, camera, refinement.criteria, refinement.budget)
-    return mesh_of(slots_of(live, positions=refinement.positions))
+    return live.mesh(positions=refinement.positions)
 
 
 def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> ControlMesh:

@@ -1,0 +1,111 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Slots of a √3 refinement: taking, freeing, writing faces; and the queue of faces to be asked."""
+
+import numpy as np
+
+from foveal.base.jit import lean
+
+from ._kernels_sqrt3_layout import (
+    FACES,
+    FIRST,
+    FREE,
+    FREE_FACE,
+    FREE_FACES,
+    FREE_VERTEX,
+    FREE_VERTICES,
+    NONE,
+    QUEUED,
+    VERTICES,
+)
+
+
+@lean
+def take_face(net):
+    """A free face slot."""
+    f = net.counts[FACES]
+    if net.counts[FREE_FACES] > 0:
+        f = net.counts[FREE_FACE]
+        net.counts[FREE_FACES] -= 1
+        net.counts[FREE_FACE] = net.faces[f].beside[0]
+    else:
+        net.counts[FACES] += 1
+    return f
+
+
+@lean
+def take_vertex(net):
+    """A free vertex slot."""
+    v = net.counts[VERTICES]
+    if net.counts[FREE_VERTICES] > 0:
+        v = net.counts[FREE_VERTEX]
+        net.counts[FREE_VERTICES] -= 1
+        net.counts[FREE_VERTEX] = net.vertices[v].triple[0]
+    else:
+        net.counts[VERTICES] += 1
+    return v
+
+
+@lean
+def give_face(net, f):
+    """Free a face slot."""
+    net.faces[f].state = FREE
+    net.faces[f].beside[0] = net.counts[FREE_FACE]
+    net.counts[FREE_FACE] = f
+    net.counts[FREE_FACES] += 1
+
+
+@lean
+def give_vertex(net, v):
+    """Free a vertex slot."""
+    net.births[v] = FREE
+    net.vertices[v].triple[0] = net.counts[FREE_VERTEX]
+    net.counts[FREE_VERTEX] = v
+    net.counts[FREE_VERTICES] += 1
+
+
+@lean
+def enqueue(net, f):
+    """Let a face be asked, unless it waits already."""
+    if not net.faces[f].is_queued:
+        net.faces[f].is_queued = True
+        i = net.counts[FIRST] + net.counts[QUEUED]
+        net.queue[i if i < len(net.queue) else i - len(net.queue)] = f
+        net.counts[QUEUED] += 1
+
+
+@lean
+def dequeue(net):
+    """The face that has waited longest."""
+    i = net.counts[FIRST]
+    f = np.int64(net.queue[i])
+    net.counts[FIRST] = i + 1 if i + 1 < len(net.queue) else 0
+    net.counts[QUEUED] -= 1
+    net.faces[f].is_queued = False
+    return f
+
+
+@lean
+def put(net, f, a, b, c, x, y, z, state):
+    """Write a face: corners, faces beyond, state; it is to be asked."""
+    face = net.faces[f]
+    face.corners[0], face.corners[1], face.corners[2] = a, b, c
+    face.beside[0], face.beside[1], face.beside[2] = x, y, z
+    set_state(net, f, state)
+
+
+@lean
+def set_state(net, f, state):
+    """Make a face another kind; it is to be asked."""
+    net.faces[f].state = state
+    net.faces[f].until = 0.0
+    enqueue(net, f)
+
+
+@lean
+def relink(net, n, u, f):
+    """Tell face n that f is beyond its edge that begins at u."""
+    if n != NONE:
+        face = net.faces[n]
+        for k in range(3):
+            if face.corners[k] == u:
+                face.beside[k] = f
