@@ -42,7 +42,9 @@ def test_what_is_behind_is_left_alone_and_what_is_before_is_not():
 @pytest.mark.parametrize("seed", range(3))
 def test_the_mesh_depends_on_the_view_and_the_depth_buffer_alone(seed):
     rng = np.random.default_rng(seed)
-    mesh = corpus.joined(bumpy_sphere(2, seed=seed), TriMesh(icosphere(1).positions - [0, 0, 3], icosphere(1).faces))
+    mesh = corpus.joined(
+        bumpy_sphere(2, seed=seed), TriMesh(icosphere(1).positions - [0, 0, 3], icosphere(1).faces)
+    )
     refined = Sqrt3(mesh)
     for _ in range(5):
         eye = rng.normal(size=3)

@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Whether a triangle is to be refined for a view: from its corners and limit normals alone.
 
-`view` (24 or more,): the eye, pixels per radian, five frustum planes as (normal, offset). `limits` (3 or more, 3): for
-front faces, silhouettes and back faces the most iterations, the edge in pixels that is short enough, the
-bend that is flat enough. What else they hold is for `_kernels_hidden.py`.
+`view` (24 or more,): the eye, pixels per radian, five frustum planes as (normal, offset). `limits` (3 or
+more, 3): for front faces, silhouettes and back faces the most iterations, the edge in pixels that is short
+enough, the bend that is flat enough. What else they hold is for `_kernels_hidden.py`.
 """
 
 import math

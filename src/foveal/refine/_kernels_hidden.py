@@ -1,8 +1,6 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Whether a ball is behind what a depth buffer shows."""
 
-import math
-
 from foveal.base.jit import lean
 
 #: Where `view` goes on with a depth buffer: its camera's basis and eye, pixels per radian, size, depths.
@@ -11,7 +9,7 @@ BASIS, EYE, PIXELS, SIZE, DEPTHS = 24, 33, 36, 37, 39
 
 @lean
 def is_hidden(view, x, y, z, radius):
-    """Whether the ball around (x, y, z) is behind all that the depth buffer, if `view` has one, shows there."""
+    """Whether the ball around (x, y, z) is behind all that the depth buffer, if there is one, shows."""
     if len(view) <= BASIS:
         return False
     dx, dy, dz = x - view[EYE], y - view[EYE + 1], z - view[EYE + 2]
@@ -46,4 +44,4 @@ def span(across, radius, near, far, pixels, size):
     last = 0.5 * size + pixels * high / (near if high > 0.0 else far)
     if not (first >= 0.0 and last < size):
         return -1, -1
-    return int(math.floor(first)), int(math.floor(last))
+    return int(first), int(last)

@@ -17,17 +17,11 @@ ROUNDED = 1.0 - 2.0**-22
 @lean
 def wants(net, u, v, w, level, view, limits, ax, ay, az, bx, by, bz, cx, cy, cz):
     """(is wanted, slack) of the face of generation `level` at these vertices and places."""
-    is_own, slack = is_wanted(
-        view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, net.normals, u, v, w
-    )
-    if is_own and len(view) > BASIS:
+    if len(view) > BASIS:
         x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
-        radius = BALL * longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)
-        if is_hidden(view, x, y, z, radius):
-            return is_wanted(
-                view, limits[3:], level, ax, ay, az, bx, by, bz, cx, cy, cz, net.normals, u, v, w
-            )
-    return is_own, slack
+        if is_hidden(view, x, y, z, BALL * longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)):
+            limits = limits[3:]
+    return is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, net.normals, u, v, w)
 
 
 @lean
