@@ -66,7 +66,12 @@ export function freshMessage(slots: Slots, sequence = 1, more: Partial<Parts> = 
 }
 
 /** Only the words that differ, each run a range. */
-export function nextMessage(from: Slots, to: Slots, sequence: number, more: Partial<Parts> = {}): ArrayBuffer {
+export function nextMessage(
+  from: Slots,
+  to: Slots,
+  sequence: number,
+  more: Partial<Parts> = {},
+): ArrayBuffer {
   const before = arraysOf(from);
   const ranges = arraysOf(to).flatMap((bytes, array) => {
     const old = new Uint8Array(bytes.length);

@@ -1,5 +1,6 @@
+import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { Gap, parseMessage, SlotBuffers } from "./wire";
+import { COLOUR_SHIFT, Gap, LEVEL_MASK, parseMessage, SlotBuffers } from "./wire";
 import { arraysOf, freshMessage, messageOf, nextMessage, SPLIT, TETRAHEDRON } from "./wire.fixture";
 
 /** The arrays of the slots in use, as bytes. */
@@ -14,6 +15,59 @@ function bytesOf(slots: SlotBuffers): Uint8Array[] {
     part(slots.tags, 4 * Math.ceil(faceCount / 4)),
   ];
 }
+
+const GOLDEN = new URL("../../../spec/golden/", import.meta.url);
+
+interface GoldenMessage {
+  readonly file: string;
+  readonly head: Record<string, number | boolean>;
+  readonly faces: number[][];
+  readonly positions: number[][];
+  readonly starts: number[][];
+  readonly levels: number[];
+  readonly colours: number[];
+}
+
+describe("the golden session", () => {
+  const { messages } = JSON.parse(readFileSync(new URL("wire.json", GOLDEN), "utf8")) as {
+    messages: GoldenMessage[];
+  };
+  const dataOf = (file: string): ArrayBuffer => new Uint8Array(readFileSync(new URL(file, GOLDEN))).buffer;
+
+  it("gives the arrays that it says, message by message", () => {
+    const slots = new SlotBuffers();
+    for (const { file, head, faces, positions, starts, levels, colours } of messages) {
+      const message = parseMessage(dataOf(file));
+      const { sequence, base, is_settled, triangles, milliseconds, threshold } = head;
+      expect(message).toMatchObject({
+        sequence,
+        base,
+        isSettled: is_settled,
+        faces: faces.length,
+        vertices: positions.length,
+        triangles,
+        milliseconds,
+        threshold,
+      });
+      slots.apply(message);
+      expect([...slots.faces.subarray(0, 3 * slots.faceCount)]).toEqual(faces.flat());
+      expect([...slots.positions.subarray(0, 3 * slots.vertexCount)]).toEqual(positions.flat());
+      expect([...slots.starts.subarray(0, 3 * slots.vertexCount)]).toEqual(starts.flat());
+      const tags = [...slots.tags.subarray(0, slots.faceCount)];
+      expect(tags.map((tag) => tag & LEVEL_MASK)).toEqual(levels);
+      expect(tags.map((tag) => tag >> COLOUR_SHIFT)).toEqual(colours);
+    }
+  });
+
+  it("is refused in every part cut short", () => {
+    for (const { file } of messages) {
+      const data = dataOf(file);
+      for (let length = 0; length < data.byteLength; length++) {
+        expect(() => parseMessage(data.slice(0, length))).toThrow(/cannot be read/);
+      }
+    }
+  });
+});
 
 describe("a live session's messages", () => {
   it("change what they say and tell what that was", () => {

@@ -23,7 +23,8 @@ export interface InsetPlace {
 }
 
 const FIELD_OF_VIEW = 30;
-const MARGIN = 1.08;
+/** Surfaces do not reach the corners of their boxes. */
+const MARGIN = 0.85;
 const LINES = 0xe08a3c;
 /** Corners of the picture, round it. */
 const CORNERS = [

@@ -1,3 +1,4 @@
+import { readFileSync } from "node:fs";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import type { Problem } from "../format/problem";
 import type { SlotChanges } from "../format/wire";
@@ -103,6 +104,24 @@ describe("a live refinement", () => {
     source.request(wish(6), 3);
     expect(sockets[0]!.distances).toEqual([5, 5, 6]);
     expect(source.isSettled).toBe(false);
+  });
+
+  it("asks in the words of the wire", () => {
+    const golden = JSON.parse(
+      readFileSync(new URL("../../../spec/golden/wire.json", import.meta.url), "utf8"),
+    ).request;
+    const { source, sockets } = start();
+    sockets[0]!.open();
+    source.request(wish(5), 3.5);
+    const shape = (value: unknown): unknown =>
+      typeof value === "object" && value !== null && !Array.isArray(value)
+        ? Object.fromEntries(
+            Object.entries(value)
+              .sort()
+              .map(([k, v]) => [k, shape(v)]),
+          )
+        : typeof value;
+    expect(shape(sockets[0]!.sent[0])).toEqual(shape(golden));
   });
 
   it("has one request under way, and the newest camera is the next", () => {
