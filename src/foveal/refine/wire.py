@@ -25,7 +25,7 @@ _SETTLED, _LIMIT = 1, 2
 _COLOUR_SHIFT = 5
 
 #: Changes are looked for in blocks of so many words, as many as a uint64 has bytes. After 1 degree of orbit
-#: at 125,000 triangles 35 KB differ, and by blocks of 4, 8 and 16 words 98, 133 and 192 KB are sent, in 1,820,
+#: at 125,000 triangles 35 KB differ; by blocks of 4, 8 and 16 words 98, 133 and 192 KB are sent, in 1,820,
 #: 1,379 and 982 ranges.
 _BLOCK = 8
 
