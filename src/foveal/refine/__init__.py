@@ -1,6 +1,7 @@
-"""Refinement that follows the eye: √3 subdivision of a control mesh where it is looked at."""
+"""Refinement of a control mesh: where it is looked at (√3), or everywhere (Loop, modified butterfly)."""
 
 from .criteria import Criteria, Region
 from .sqrt3 import Sqrt3, Update, sqrt3
+from .uniform import butterfly, loop
 
-__all__ = ["Criteria", "Region", "Sqrt3", "Update", "sqrt3"]
+__all__ = ["Criteria", "Region", "Sqrt3", "Update", "butterfly", "loop", "sqrt3"]
