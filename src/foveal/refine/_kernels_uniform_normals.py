@@ -7,10 +7,15 @@ from foveal.base.jit import kernel
 
 from ._kernels_uniform import ring_of
 
+HALF_ROOT3 = 0.8660254037844386
+#: Of valence six, which nearly all vertices have: looked up, normals take a third of the time.
+COSINES = (1.0, 0.5, -0.5, -1.0, -0.5, 0.5)
+SINES = (0.0, HALF_ROOT3, HALF_ROOT3, 0.0, -HALF_ROOT3, -HALF_ROOT3)
+
 
 @kernel
 def limit_normals(faces, edges, halves, positions, is_border, first, ring, normals):
-    """The cross product of the limit's two tangents at each vertex, of any length.
+    """The cross product of the limit's two tangents at each vertex, unit or zero.
 
     Based on: C. Loop 1987 (eigenvectors of the local subdivision matrix); on the border those of the rule
     1/2, 1/2 for edges, and not Hoppe's for another edge rule, which are off by some degrees.
@@ -25,6 +30,8 @@ def limit_normals(faces, edges, halves, positions, is_border, first, ring, norma
         for i in range(n):
             if is_border[v]:
                 s, t = along_border(i, n), across_border(i, n, wide)
+            elif n == 6:
+                s, t = COSINES[i], SINES[i]
             else:
                 s, t = math.cos(wide * i), math.sin(wide * i)
             x, y, z = positions[ring[i], 0], positions[ring[i], 1], positions[ring[i], 2]
@@ -37,7 +44,10 @@ def limit_normals(faces, edges, halves, positions, is_border, first, ring, norma
                 ty + t * positions[v, 1],
                 tz + t * positions[v, 2],
             )
-        normals[v, 0], normals[v, 1], normals[v, 2] = sy * tz - sz * ty, sz * tx - sx * tz, sx * ty - sy * tx
+        x, y, z = sy * tz - sz * ty, sz * tx - sx * tz, sx * ty - sy * tx
+        length = math.sqrt(x * x + y * y + z * z)
+        scale = 1.0 / length if length > 0.0 else 0.0
+        normals[v, 0], normals[v, 1], normals[v, 2] = x * scale, y * scale, z * scale
 
 
 @kernel

@@ -9,7 +9,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from foveal.mesh.normals import unit_normals
 from foveal.mesh.trimesh import TriMesh
 
 from . import _kernels_uniform as kernels
@@ -17,7 +16,7 @@ from . import _kernels_uniform_butterfly as butterfly_kernels
 from . import _kernels_uniform_normals as normal_kernels
 from .cage import Cage
 
-__all__ = ["Level", "LoopRule", "butterfly", "loop"]
+__all__ = ["Level", "LoopRule", "butterfly", "limit_normals", "loop"]
 
 Positions = NDArray[np.float64]
 Boundary = Literal["edge", "corner"]
@@ -189,19 +188,21 @@ def loop(
             level = level.split(count)
         else:  # no one asks for its edges, which take longer than all the rest
             return TriMesh(points, level.split_faces(count))
-    normals = _limit_normals(level, points) if has_normals else None
+    normals = limit_normals(level, points) if has_normals else None
     return TriMesh(rule.limit(level, points) if positions == "limit" else points, level.faces, normals)
 
 
-def _limit_normals(level: Level, points: Positions) -> NDArray[np.float32]:
+def limit_normals(level: Level, points: Positions, /) -> NDArray[np.float32]:
+    """(v, 3): unit normals of Loop's limit surface at a level's vertices; zero where there is none."""
     first = np.empty(len(points), np.int32)
     kernels.first_half_edges(level.faces, level.halves, first)
     most = int(np.bincount(level.faces.reshape(-1)).max()) + 1
-    normals = np.empty_like(points)
+    normals = np.empty(points.shape, np.float32)
+    size = float(np.ptp(points, axis=0).max(initial=0)) or 1.0  # so that no square under- or overflows
     is_border = level.is_border(len(points))
     ring = np.empty(most, np.int32)
-    normal_kernels.limit_normals(*level, points, is_border, first, ring, normals)
-    return unit_normals(normals)
+    normal_kernels.limit_normals(*level, points / size, is_border, first, ring, normals)
+    return normals
 
 
 def butterfly(mesh: TriMesh, levels: int, /, *, name: str = "mesh") -> TriMesh:
