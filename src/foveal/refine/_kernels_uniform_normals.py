@@ -7,11 +7,6 @@ from foveal.base.jit import kernel
 
 from ._kernels_uniform import ring_of
 
-HALF_ROOT3 = 0.8660254037844386
-#: Of valence six, which nearly all vertices have: looked up, normals take a third of the time.
-COSINES = (1.0, 0.5, -0.5, -1.0, -0.5, 0.5)
-SINES = (0.0, HALF_ROOT3, HALF_ROOT3, 0.0, -HALF_ROOT3, -HALF_ROOT3)
-
 
 @kernel
 def limit_normals(faces, edges, halves, positions, is_border, first, ring, normals):
@@ -30,8 +25,6 @@ def limit_normals(faces, edges, halves, positions, is_border, first, ring, norma
         for i in range(n):
             if is_border[v]:
                 s, t = along_border(i, n), across_border(i, n, wide)
-            elif n == 6:
-                s, t = COSINES[i], SINES[i]
             else:
                 s, t = math.cos(wide * i), math.sin(wide * i)
             x, y, z = positions[ring[i], 0], positions[ring[i], 1], positions[ring[i], 2]
