@@ -15,6 +15,8 @@ from foveal.refine import Criteria, Region
 from foveal.view.camera import Camera
 
 CACHE = platformdirs.user_cache_path("foveal") / "bench"
+EDGE_PX, TURNS = 8.0, (0, 72, 144, 216, 288)
+"""Of the comparison of schemes: the longest edge that faces the eye, and its five cameras in degrees."""
 HEAD_FACES = 838  # of the mannequin's head in Alliez et al., figure 10
 
 

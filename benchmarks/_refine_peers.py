@@ -2,7 +2,6 @@
 
 import hashlib
 import shutil
-import statistics
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -24,9 +23,6 @@ HEADERS = {
     "bfr_loop": ("OpenSubdiv 3.5", "opensubdiv/bfr/tessellation.h"),
     "openmesh_sqrt3": ("OpenMesh", "OpenMesh/Tools/Subdivider/Adaptive/Composite/RulesT.hh"),
 }
-
-
-median = statistics.median
 
 
 class Missing(Exception):

@@ -9,86 +9,14 @@ refinement. 1983; D. Zorin, P. Schröder, W. Sweldens. Interactive multiresoluti
 (positions are those of uniform subdivision, all levels of which are kept).
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from _refine_levels import Hierarchy, Mask, Predicate
 from numpy.typing import NDArray
 
 from foveal.mesh import TriMesh
-from foveal.refine import Criteria
-from foveal.refine.cage import Cage
-from foveal.refine.criteria import view_of
-from foveal.refine.uniform import Level, LoopRule, limit_normals
-from foveal.view.camera import Camera
-
-Edges = NDArray[np.int64]
-Mask = NDArray[np.bool_]
-Predicate = Callable[[int, Edges], Mask]
-"""(level, edges of it) -> which of them are to be split."""
-
-
-class Hierarchy:
-    """Levels of uniform Loop subdivision, as many as were asked for, up to the `deepest`.
-
-    A vertex has the same number on each level it is on, so that the last level's normals serve all.
-    """
-
-    def __init__(self, mesh: TriMesh, deepest: int = 6) -> None:
-        cage = Cage.of(mesh)
-        self.deepest, self._rule = deepest, LoopRule(cage)
-        self.levels, self.positions = [Level.of(cage)], [cage.positions]
-        self.normals = limit_normals(self.levels[0], cage.positions)
-
-    def grow(self) -> None:
-        """One level more."""
-        level, points = self.levels[-1], self.positions[-1]
-        self.positions.append(self._rule.next(level, points))
-        self.levels.append(level.split(len(points)))
-        self.normals = limit_normals(self.levels[-1], self.positions[-1])
-
-    def limits(self) -> NDArray[np.float64]:
-        """(v, 3): where the last level's vertices end up."""
-        return self._rule.limit(self.levels[-1], self.positions[-1])
-
-    def bytes_used(self) -> int:
-        """What its arrays take."""
-        return sum(a.nbytes for level in self.levels for a in level) + sum(p.nbytes for p in self.positions)
-
-    def ends(self, level: int, edges: Edges) -> NDArray[np.int64]:
-        """(k, 2): the vertices of some edges of a level."""
-        connectivity = self.levels[level]
-        face, corner = np.divmod(connectivity.halves[edges, 0], 3)
-        ends = connectivity.faces[face[:, None], np.stack([corner, (corner + 1) % 3], axis=1)]
-        return ends.astype(np.int64)
-
-    def sides(self, level: int) -> NDArray[np.int64]:
-        """(e,): how many triangles each edge of a level has."""
-        return 1 + (self.levels[level].halves[:, 1] >= 0)
-
-
-def by_view(hierarchy: Hierarchy, camera: Camera, criteria: Criteria) -> Predicate:
-    """Edges in the frustum that are longer in pixels than their region allows.
-
-    An edge faces the eye, or away, if the limit's normals at both ends do, and would if they differed by as
-    much again; else it is on the silhouette: the same margins as those of a triangle in `foveal.refine`.
-    """
-    view, limits = view_of(camera), criteria.limits()
-    eye, pixels, planes = view[:3], view[3], view[4:].reshape(5, 4)
-
-    def is_wanted(level: int, edges: Edges) -> Mask:
-        ends = hierarchy.ends(level, edges)
-        a, b = (hierarchy.positions[level][ends[:, k]] for k in range(2))
-        middle, length = (a + b) / 2, np.linalg.norm(b - a, axis=1)
-        away = eye - middle
-        inside = middle @ planes[:, :3].T + planes[:, 3] + 1.16 * length[:, None]
-        facing = [(hierarchy.normals[ends[:, k]] * away).sum(axis=1) for k in range(2)]
-        low, high = np.minimum(*facing), np.maximum(*facing)
-        region = np.where(2 * low - high > 0, 0, np.where(low - 2 * high > 0, 2, 1))
-        is_long = pixels * length > limits[region, 1] * np.linalg.norm(away, axis=1)
-        return (inside >= 0).all(axis=1) & is_long & (level < limits[region, 0])
-
-    return is_wanted
+from foveal.refine.uniform import Level
 
 
 def wanted_edges(hierarchy: Hierarchy, is_wanted: Predicate) -> list[Mask]:

@@ -4,16 +4,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from _refine_models import camera, criteria, real
-from _refine_redgreen import Hierarchy, by_view, red_green, wanted_edges
+from _refine_levels import Hierarchy, by_view
+from _refine_models import EDGE_PX, TURNS, camera, criteria, real
+from _refine_redgreen import red_green, wanted_edges
 from _refine_views import rgb_scheme
 from _shape import Row
 
 from foveal.mesh import TriMesh
 from foveal.refine import Sqrt3
-
-EDGE_PX = 8.0
-TURNS = (0, 72, 144, 216, 288)
 
 
 @dataclass

@@ -1,5 +1,6 @@
 """Uniform Loop subdivision: foveal, OpenSubdiv's Far, libigl and trimesh in turns."""
 
+import statistics
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def loops(folder: Path, *, is_quick: bool) -> Iterator[Row]:
             )
         except peers.Missing as reason:
             why = str(reason)
-    others = {name: peers.median(found) for name, found in speeds.items() if found and name != "foveal"}
+    others = {name: statistics.median(found) for name, found in speeds.items() if found and name != "foveal"}
     yield Row.of(
         "loop_uniform_mtris", case, speeds["foveal"], "Mtri/s", "higher", bar=5, peers=others, why=why
     )

@@ -1,13 +1,14 @@
 """Refinement for a view: fresh, and after the camera went one degree on around the model."""
 
+import statistics
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import _refine_peers as peers
-import numpy as np
 from _refine_models import camera, criteria, head, threshold
 from _shape import Row, seconds
 
@@ -29,6 +30,13 @@ def rgb_scheme() -> Make | None:
     return getattr(foveal.refine, "Rgb", None)
 
 
+@cache
+def pixels(make: Make, wanted: int) -> tuple[float, int]:
+    """(edge_px, triangles): what brings the head to about so many triangles."""
+    mesh, _ = head()
+    return threshold(lambda px: int(make(mesh).update(camera(mesh), criteria=criteria(px)).faces), wanted)
+
+
 @dataclass
 class Walk:
     """Milliseconds of a scheme on the way around a model, and of others for the first view."""
@@ -42,16 +50,13 @@ class Walk:
     why: str
 
 
-def walk(make: Make, mesh: TriMesh, wanted: int, runs: int, path: Path | None = None) -> Walk:
+def walk(make: Make, wanted: int, runs: int, path: Path | None = None) -> Walk:
     """Fresh meshes and updates in turns, one degree further each time, at about `wanted` triangles.
 
     A fresh mesh is made from nothing, its arrays included; an update leaves them in their slots.
     """
-
-    def count(px: float) -> int:
-        return int(make(mesh).update(camera(mesh), criteria=criteria(px)).faces)
-
-    px, faces = threshold(count, wanted)
+    mesh, _ = head()
+    px, faces = pixels(make, wanted)
     wish, follower = criteria(px), make(mesh)
     follower.update(camera(mesh), criteria=wish)
     follower.mesh()
@@ -93,15 +98,15 @@ def _others(mesh: TriMesh, path: Path, wanted: int, found: Walk) -> dict[str, tu
 
 def sqrt3(folder: Path, *, is_quick: bool) -> Iterator[Row]:
     """The paper's case: a head of 838 triangles to about 43,000."""
-    mesh, name = head()
-    done = walk(Sqrt3, mesh, 43_000, 5 if is_quick else 21, folder / "head.bin")
+    _, name = head()
+    done = walk(Sqrt3, 43_000, 5 if is_quick else 21, folder / "head.bin")
     case = f"{name} to {done.faces:,}, {done.edge_px:.2f} px"
-    others = {name: peers.median(ms) for name, ms in done.others.items()}
+    others = {name: statistics.median(ms) for name, ms in done.others.items()}
     yield Row.of(
         "sqrt3_fresh_43k_ms", case, done.fresh, "ms", "lower", bar=20, peers=others, why=done.why.strip()
     )
     yield Row.of("sqrt3_orbit_1deg_ms", case, done.orbit, "ms", "lower", bar=5)
-    shares = [o / peers.median(done.fresh) for o in done.orbit]
+    shares = [o / statistics.median(done.fresh) for o in done.orbit]
     yield Row.of("sqrt3_orbit_vs_fresh", case, shares, "of fresh", "lower", bar=0.25)
     size = done.bytes_per_triangle
     yield Row(
@@ -126,7 +131,7 @@ def classify(view, limits, faces, positions, normals):
 def silhouette(*, is_quick: bool) -> Iterator[Row]:
     """The share that asking has of a fresh refinement: once of each triangle there is and of each split."""
     mesh, name = head()
-    px, _ = threshold(lambda px: Sqrt3(mesh).update(camera(mesh), criteria=criteria(px)).faces, 43_000)
+    px, _ = pixels(Sqrt3, 43_000)
     wish, refined = criteria(px), Sqrt3(mesh)
     done = refined.update(camera(mesh), criteria=wish)
     fine = refined.mesh()
@@ -149,13 +154,13 @@ def page(*, is_quick: bool) -> Iterator[Row]:
 def rgb(*, is_quick: bool) -> Iterator[Row]:
     """The head to about 100,000 triangles by RGB."""
     bars = {"rgb_fresh_100k_ms": 200, "rgb_orbit_1deg_ms": 10}
-    mesh, name = head()
+    _, name = head()
     make = rgb_scheme()
     if make is None:
         for key, bar in bars.items():
             yield Row(key, name, None, "ms", "lower", bar=bar, why="foveal.refine.Rgb is not there")
         return
-    done = walk(make, mesh, 100_000, 3 if is_quick else 15)
+    done = walk(make, 100_000, 3 if is_quick else 15)
     case = f"{name} to {done.faces:,}, {done.edge_px:.2f} px"
     for key, values in zip(bars, (done.fresh, done.orbit), strict=True):
         yield Row.of(key, case, values, "ms", "lower", bar=bars[key])
@@ -169,7 +174,7 @@ def rgb_operations(*, is_quick: bool) -> Iterator[Row]:
         why = "foveal.refine.Rgb is not there"
         yield Row("rgb_ops_per_s", name, None, "M/s", "higher", bar=0.7, why=why)
         return
-    px, _ = threshold(lambda px: make(mesh).update(camera(mesh), criteria=criteria(px)).faces, 100_000)
+    px, _ = pixels(make, 100_000)
     coarse = Criteria(Region(0), Region(0), Region(0))
     speeds: dict[str, list[float]] = {"splits": [], "merges": []}
     for turn in range(4 if is_quick else 12):
@@ -182,6 +187,6 @@ def rgb_operations(*, is_quick: bool) -> Iterator[Row]:
         if turn:  # the first is the warm-up
             speeds["splits"].append(finer.split / (middle - begin) / 1e6)
             speeds["merges"].append(coarser.undone / (end - middle) / 1e6)
-    for kind in sorted(speeds, key=lambda kind: np.median(speeds[kind])):
+    for kind in sorted(speeds, key=lambda kind: statistics.median(speeds[kind])):
         case = f"{name} to 100,000, {kind}"
         yield Row.of("rgb_ops_per_s", case, speeds[kind], "M/s", "higher", bar=0.7)
