@@ -78,7 +78,7 @@ def plot_triangles(results: Results, path: Path) -> None:
     axes.set_xticks(range(len(results)), list(results))
     axes.set_yscale("log")
     axes.set_ylabel("triangles")
-    axes.legend(fontsize=8, ncols=3)
+    figure.legend(fontsize=8, ncols=len(present), loc="outside upper center")
     save(figure, path)
 
 
