@@ -80,7 +80,10 @@ def born(net, a, b, c, pair, level, kind):
 
 @lean
 def split(net, f):
-    """Split a face of generation k, no cut at a seam; returns the new vertex, or the first of two on a border."""
+    """Split a face of generation k that is not to be cut at a seam.
+
+    Returns the new vertex, or the first of two on a border.
+    """
     face = net.faces[f]
     level = generation(face.state)
     if level % 2 == 1 and face.beside[0] < 0:

@@ -5,8 +5,9 @@ A face has three corners, counter-clockwise, and a state. A face of generation k
 subdivision's level k. A half of generation k is a third of a split face whose old edge, its edge 0, could not
 be flipped yet, since the face beyond is not split; its corner 2 is the new vertex.
 
-A seam is a sharp edge, along which the mesh is cut open: each side has vertices of its own, and the rules of a
-border. `beside` is negative on both, NONE at the border, and at a seam says which edge of which face is beyond.
+A seam is a sharp edge, along which the mesh is cut open: each side has vertices of its own, and the rules of
+a border. `beside` is negative at both: at a border NONE, at a seam it says which
+edge of which face is beyond.
 """
 
 from foveal.base.jit import lean

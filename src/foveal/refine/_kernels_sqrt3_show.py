@@ -29,7 +29,10 @@ def show_faces(net, corners, levels, highest):
 
 @lean
 def show_vertices(net, is_limit, highest, positions, starts):
-    """positions: on the highest level of the faces there (on both sides of a seam), or in the limit; starts: on the level of birth."""
+    """positions: on the highest level of the faces there, or in the limit; starts: on the level of birth.
+
+    At a seam of the faces on both sides, which may have come to different levels.
+    """
     for v in range(len(positions)):
         vertex = net.vertices[v]
         x, y, z = vertex.born[0], vertex.born[1], vertex.born[2]

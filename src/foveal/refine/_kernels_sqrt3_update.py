@@ -31,7 +31,6 @@ from ._kernels_sqrt3_layout import (
     VERTICES,
     WANTED,
     corner_at,
-    generation,
     is_half,
 )
 from ._kernels_sqrt3_slots import dequeue, enqueue
@@ -147,8 +146,10 @@ def wake_expired(net, drift):
 
 @lean
 def split_as(net, f, is_own, until, view, limits, drift):
-    """Split face f, which is wanted itself (is_own, until which drift) or only needed; the one beyond a seam
-    where that is cut."""
+    """Split face f, which is wanted itself (is_own, until which drift) or only needed.
+
+    Where it is cut at a seam, the face beyond is split with it.
+    """
     n = beyond_cut(net, f)
     if n == NONE:
         mark(net, split(net, f), is_own, until)

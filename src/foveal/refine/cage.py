@@ -17,8 +17,8 @@ class Cage:
     """A triangle mesh on which each edge has one or two faces and each vertex one fan.
 
     Along sharp edges it is cut open: each sector of a vertex's fan between them has a vertex of its own. A
-    vertex on two of them (a border edge counts as one) is on a crease; on one, the end of a crease, or on more
-    it is a corner.
+    vertex on two of them (a border edge counts as one) is on a crease; on one, where a crease ends, and on
+    more it is a corner.
 
     Attributes
     ----------
@@ -138,9 +138,7 @@ def _cut_open(mesh: TriMesh, beside: NDArray[np.int32], name: str) -> Cage:
     further = further[~is_corner[count:]]
     twins[further], twins[origins[further]] = origins[further], further
     starts, ring, is_border = _rings(name, faces, beside, total)
-    return Cage(
-        mesh.positions[origins], faces, beside, starts, ring, is_border, is_corner, origins, twins
-    )
+    return Cage(mesh.positions[origins], faces, beside, starts, ring, is_border, is_corner, origins, twins)
 
 
 def _refuse_edges(

@@ -9,8 +9,8 @@ from ._kernels_sqrt3_layout import FIRST
 
 __all__ = ["FACE", "VERTEX", "Net"]
 
-#: A face, in half a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, or negative at
-#: a border or seam, `until` the drift of the view up to which it is known not to be wanted split. Of a free
+#: A face, in half a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, negative at a
+#: border or seam, `until` the drift of the view up to which it is known not to be wanted split. Of a free
 #: slot `beside[0]` is the next.
 FACE = np.dtype(
     [

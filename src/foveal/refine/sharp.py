@@ -46,9 +46,12 @@ def sharp_edges(mesh: TriMesh, angle: float, /) -> NDArray[np.int32]:
     is_new[1:-1] = (edges[order][1:] != edges[order][:-1]).any(axis=1)
     first = np.flatnonzero(is_new)
     first = first[:-1][np.diff(first) == 2]  # edges of exactly two faces
-    a, b, c = (mesh.positions[faces[:, k]] for k in range(3))
+    # Scaled to about 1, so that products of tiny and of huge coordinates stay within float64.
+    scale = max(float(np.ptp(mesh.positions, axis=0).max(initial=0)), 1e-300) if len(faces) else 1.0
+    a, b, c = (mesh.positions[faces[:, k]] / scale for k in range(3))
     normals = np.cross(b - a, c - a)
     one, two = normals[order[first] // 3], normals[order[first + 1] // 3]
     across = np.linalg.norm(np.cross(one, two), axis=1)
     bends = np.arctan2(across, (one * two).sum(axis=1))  # 0 where one is zero
-    return edges[order[first]][bends > angle].astype(np.int32)
+    found: NDArray[np.int32] = edges[order[first]][bends > angle].astype(np.int32)
+    return found

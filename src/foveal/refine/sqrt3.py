@@ -2,7 +2,8 @@
 
 Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent refinement of 3D meshes using
 √3-subdivision (the criteria, the structure without edges or hierarchy); L. Kobbelt. √3-subdivision. SIGGRAPH
-2000 (the surface, adaptive refinement by forced mates).
+2000 (the surface, adaptive refinement by forced mates, the rule of borders); H. Hoppe et al. Piecewise smooth
+surface reconstruction. SIGGRAPH 1994, section 3 (creases and corners).
 """
 
 from dataclasses import dataclass
@@ -64,10 +65,10 @@ class Sqrt3:
     mesh : TriMesh
         An oriented surface, open or closed.
     sharp : (k, 2) int, optional
-        The vertices, in [0, n), of edges that stay sharp, as `sharp_edges` finds them: a piecewise smooth
-        surface. A vertex on two of them, borders included, is on a crease, which is a cubic spline as a border
-        is; on more it is a corner and stays where it is. So does the end of a crease, for which there is no
-        rule that could be told for all levels at once.
+        The vertices, in [0, n), of edges that stay sharp, as `sharp_edges` finds them; the surface is smooth
+        between. Of a vertex's edges sharp or on the border, two are a crease, which becomes a cubic spline as
+        a border does; at more it is a corner and stays. At one, where a crease ends, it stays as well: Hoppe
+        et al. move it as if inside, but for that no closed form is known to us.
     name : str
         What errors call it.
 
@@ -203,7 +204,9 @@ class Sqrt3:
         )
 
 
-def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None) -> TriMesh:
+def sqrt3(
+    mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None, sharp: ArrayLike | None = None
+) -> TriMesh:
     """A mesh refined for one view; see `Sqrt3`, which follows a camera.
 
     Examples
@@ -215,6 +218,6 @@ def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None)
     >>> len(sqrt3(tetrahedron(), Camera.of([0, 0, 9], [0, 0, 0]), criteria=everywhere).faces)
     36
     """
-    refined = Sqrt3(mesh)
+    refined = Sqrt3(mesh, sharp=sharp)
     refined.update(camera, criteria=criteria)
     return refined.mesh()
