@@ -12,6 +12,7 @@ from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain, tetrahedron, to
 from foveal.mesh.trimesh import TriMesh
 from foveal.refine import Criteria, Region, Sqrt3
 from foveal.refine.sharp import sharp_edges
+from foveal.view.camera import Camera
 from refine.naive_sqrt3 import subdivided
 from refine.test_sqrt3 import SURFACES, around, assert_same, assert_surface, everywhere, turned
 
@@ -152,6 +153,19 @@ def test_the_mesh_depends_on_the_view_alone_and_conforms(name, seed):
         assert_surface(refined.mesh(), mesh)
         assert_closes(refined)
     assert_closes(refined, "limit")
+
+
+@pytest.mark.parametrize("name", CREASED)
+def test_nothing_is_undone_in_vain(name):
+    """What one side of a seam needs of the other is known to be needed, and not split again each time."""
+    mesh, sharp = CREASED[name]()
+    for camera, criteria in walk(mesh, 0, 6):
+        refined = Sqrt3(mesh, sharp=sharp)
+        refined.update(camera, criteria=criteria)
+        nearly = Camera.of(camera.position * (1 + 1e-14), camera.target)
+        assert (nearly.position != camera.position).any()
+        again = refined.update(nearly, criteria=criteria)
+        assert (again.split, again.undone) == (0, 0)
 
 
 @pytest.mark.parametrize("seed", range(2))

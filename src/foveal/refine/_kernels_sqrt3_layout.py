@@ -6,8 +6,7 @@ subdivision's level k. A half of generation k is a third of a split face whose o
 be flipped yet, since the face beyond is not split; its corner 2 is the new vertex.
 
 A seam is a sharp edge, along which the mesh is cut open: each side has vertices of its own, and the rules of
-a border. `beside` is negative at both: at a border NONE, at a seam it says which
-edge of which face is beyond.
+a border. `beside` is negative at both: NONE at a border, at a seam which edge of which face is beyond.
 """
 
 from foveal.base.jit import lean
