@@ -1,72 +1,88 @@
-"""Uniform √3 subdivision as Kobbelt's paper tells it: dictionaries, one step after the other."""
+"""Uniform √3 subdivision as Kobbelt's paper tells it: dictionaries, one step after the other.
+
+Border edges are sharp edges, and sharp edges what the paper makes of border edges: cut in three on every
+second step, never flipped, while each side does as if there were nothing beyond.
+"""
 
 import math
 
 import numpy as np
 
 
-def subdivided(positions, faces, steps):
-    """(positions, faces) after so many steps; on every second one the border edges are cut in three."""
-    positions, faces = (
-        [np.asarray(p, float) for p in positions],
-        [tuple(f) for f in np.asarray(faces).tolist()],
-    )
+def subdivided(positions, faces, steps, sharp=()):
+    """(positions, faces) after so many steps; `sharp` are the pairs of vertices of the edges that are."""
+    positions = [np.asarray(p, float) for p in positions]
+    faces = [tuple(f) for f in np.asarray(faces).tolist()]
+    edges = {(f[k], f[(k + 1) % 3]) for f in faces for k in range(3)}
+    sharp = {frozenset(map(int, pair)) for pair in sharp} | {
+        frozenset((a, b)) for a, b in edges if (b, a) not in edges
+    }
     for step in range(steps):
-        positions, faces = _step(positions, faces, is_odd=step % 2 == 1)
+        positions, faces, sharp = _step(positions, faces, sharp, is_odd=step % 2 == 1)
     return np.array(positions), np.array(faces)
 
 
-def _step(positions, faces, *, is_odd):
-    owner = {(f[k], f[(k + 1) % 3]): (i, f[(k + 2) % 3]) for i, f in enumerate(faces) for k in range(3)}
-    rings = {}
-    for a, b in owner:
-        rings.setdefault(a, set()).add(b)
-        rings.setdefault(b, set()).add(a)
-    following = {a: b for a, b in owner if (b, a) not in owner}
-    before = {b: a for a, b in following.items()}
-    moved = []
-    for v, p in enumerate(positions):
-        if v in following:
-            q, r = positions[before[v]], positions[following[v]]
-            moved.append((4 * q + 19 * p + 4 * r) / 27 if is_odd else p)
-        elif v not in rings:
-            moved.append(p)
-        else:
-            n = len(rings[v])
-            share = (4 - 2 * math.cos(2 * math.pi / n)) / 9
-            moved.append((1 - share) * p + share * sum(positions[w] for w in rings[v]) / n)
-    # What faces each old edge: the middle of its face, or on a cut border the point near the edge's end.
-    facing, new_faces = {}, []
+def _step(positions, faces, sharp, *, is_odd):
+    rings, along = {}, {}  # each vertex's neighbours, and those along sharp edges
     for f in faces:
-        edge = next(
-            (
-                (f[k], f[(k + 1) % 3])
-                for k in range(3)
-                if f[k] in following and following[f[k]] == f[(k + 1) % 3]
-            ),
-            None,
-        )
-        if is_odd and edge:
-            a, b = edge
-            c = next(v for v in f if v not in edge)
-            pa, pb = positions[a], positions[b]
-            p, q = len(moved), len(moved) + 1
-            moved.append((positions[before[a]] + 16 * pa + 10 * pb) / 27)
-            moved.append((10 * pa + 16 * pb + positions[following[b]]) / 27)
+        for v in f:
+            rings.setdefault(v, set()).update(set(f) - {v})
+    for pair in sharp:
+        a, b = pair
+        along.setdefault(a, []).append(b)
+        along.setdefault(b, []).append(a)
+    moved = [_moved(v, positions, rings, along, is_odd) for v in range(len(positions))]
+    # What faces each edge in its face: the middle of that, or if it is cut the third of its sharp edge.
+    facing, new_faces, thirds = {}, [], {}
+    if is_odd:
+        for a, b in map(tuple, sharp):
+            for v, w in ((a, b), (b, a)):
+                thirds[v, w] = len(moved)
+                moved.append(_third(v, w, positions, along))
+    for f in faces:
+        cut = [k for k in range(3) if frozenset((f[k], f[(k + 1) % 3])) in sharp] if is_odd else []
+        assert len(cut) <= 1
+        for k in cut:
+            a, b, c = f[k], f[(k + 1) % 3], f[(k + 2) % 3]
+            p, q = thirds[a, b], thirds[b, a]
             facing[c, a], facing[b, c] = p, q
             new_faces.append((p, q, c))
-            facing[a, b] = None
-        else:
+        if not cut:
             middle = len(moved)
             moved.append(sum(positions[v] for v in f) / 3)
             for k in range(3):
                 facing[f[k], f[(k + 1) % 3]] = middle
     for (a, b), c in facing.items():
-        if (b, a) in facing:
-            if a < b:
-                d = facing[b, a]
-                new_faces += [(a, d, c), (b, c, d)]
-        elif c is not None:
+        if frozenset((a, b)) in sharp:
             new_faces.append((a, b, c))
-    # On a cut border: the thirds beside the edge's ends, already flipped by the loop above, keep a, p and q.
-    return moved, new_faces
+        elif a < b:
+            d = facing[b, a]
+            new_faces += [(a, d, c), (b, c, d)]
+    if is_odd:
+        sharp = {
+            frozenset(pair)
+            for a, b in map(tuple, sharp)
+            for pair in ((a, thirds[a, b]), (thirds[a, b], thirds[b, a]), (thirds[b, a], b))
+        }
+    return moved, new_faces, sharp
+
+
+def _moved(v, positions, rings, along, is_odd):
+    """Where vertex v goes in a step."""
+    p, ends = positions[v], along.get(v, ())
+    if len(ends) == 2:
+        return (4 * positions[ends[0]] + 19 * p + 4 * positions[ends[1]]) / 27 if is_odd else p
+    if ends or v not in rings:  # a corner, the end of a crease, a vertex of no face
+        return p
+    n = len(rings[v])
+    share = (4 - 2 * math.cos(2 * math.pi / n)) / 9
+    return (1 - share) * p + share * sum(positions[w] for w in rings[v]) / n
+
+
+def _third(v, w, positions, along):
+    """The new point near v of the sharp edge v, w."""
+    ends = along[v]
+    if len(ends) != 2:
+        return (2 * positions[v] + positions[w]) / 3
+    before = ends[0] if ends[1] == w else ends[1]
+    return (positions[before] + 16 * positions[v] + 10 * positions[w]) / 27

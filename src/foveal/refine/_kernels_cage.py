@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
-"""One-rings of a control mesh."""
+"""One-rings of a control mesh, and its sectors between sharp edges."""
 
 from foveal.base.jit import kernel
 
@@ -49,3 +49,28 @@ def rings(faces, beside, first, is_border, starts, ring):
         if i != starts[v + 1]:
             return v
     return -1
+
+
+@kernel
+def sectors(faces, beside, count, apart, origins):
+    """Give each sector of a vertex's fan, between two edges with no face beside, a vertex of its own.
+
+    apart: the faces at those; origins: -1 before, of each of `count` vertices and of the new ones the vertex
+    it was. The first sector keeps its vertex, others get those after the last. Returns how many there are.
+    """
+    for first in range(len(faces)):
+        for begin in range(3):
+            if beside[first, begin] >= 0:
+                continue
+            v, new = faces[first, begin], faces[first, begin]
+            if origins[v] >= 0:
+                new = count
+                count += 1
+            origins[new] = v
+            f, k = first, begin
+            while f >= 0:
+                apart[f, k] = new
+                f = beside[f, (k + 2) % 3]
+                if f >= 0:
+                    k = 0 if faces[f, 0] == v else (1 if faces[f, 1] == v else 2)
+    return count

@@ -6,12 +6,23 @@ Based on: L. Kobbelt. √3-subdivision. SIGGRAPH 2000.
 
 import math
 
+import numpy as np
+
 from foveal.base.jit import lean
 
-from ._kernels_sqrt3_layout import BORDER, NONE, PARENT, UNMEASURED, generation, half, whole
+from ._kernels_sqrt3_layout import (
+    BORDER,
+    NONE,
+    PARENT,
+    UNMEASURED,
+    generation,
+    half,
+    seam_face,
+    whole,
+)
 from ._kernels_sqrt3_measure import measure_corners
 from ._kernels_sqrt3_points import middle, near_point, position
-from ._kernels_sqrt3_slots import put, relink, set_state, take_face, take_vertex
+from ._kernels_sqrt3_slots import put, relink, set_state, sew, take_face, take_vertex
 
 
 @lean
@@ -36,7 +47,7 @@ def settle(net, h):
     """A new half becomes a face of the next generation, if nothing is beyond its old edge or a half is."""
     face = net.faces[h]
     n = face.beside[0]
-    if n == NONE:
+    if n < 0:
         set_state(net, h, face.state + 1)
     elif net.faces[n].state == face.state and net.faces[n].beside[0] == h:
         flip(net, h, n)
@@ -60,6 +71,7 @@ def born(net, a, b, c, pair, level, kind):
     v = take_vertex(net)
     vertex = net.vertices[v]
     vertex.triple[0], vertex.triple[1], vertex.triple[2], vertex.pair = a, b, c, pair
+    vertex.twin = NONE
     vertex.kind = kind
     net.births[v] = level + 1
     net.flags[v] = parents(net, a, b, c, level)
@@ -68,11 +80,16 @@ def born(net, a, b, c, pair, level, kind):
 
 @lean
 def split(net, f):
-    """Split a face of generation k; returns the new vertex, or the first of two on a border."""
+    """Split a face of generation k that is not to be cut at a seam.
+
+    Returns the new vertex, or the first of two on a border.
+    """
     face = net.faces[f]
     level = generation(face.state)
-    if level % 2 == 1 and face.beside[0] == NONE:
-        return cut(net, f)
+    if level % 2 == 1 and face.beside[0] < 0:
+        p = cut(net, f)
+        settle_cut(net, f)
+        return p
     u, v, w = face.corners[0], face.corners[1], face.corners[2]
     if level > 0:
         measure_corners(net, f)
@@ -95,8 +112,42 @@ def split(net, f):
 
 
 @lean
+def beyond_cut(net, f):
+    """The face beyond the seam at which face f is to be cut, or NONE if there is none."""
+    face = net.faces[f]
+    word = np.int64(face.beside[0])
+    return seam_face(word) if word < NONE and generation(face.state) % 2 == 1 else np.int64(NONE)
+
+
+@lean
+def cut_seam(net, f, n):
+    """Split the two faces of an odd generation at a seam; returns the first new vertex of f."""
+    p, r = cut(net, f), cut(net, n)
+    q, s = net.vertices[p].pair, net.vertices[r].pair
+    net.vertices[p].twin, net.vertices[s].twin = s, p
+    net.vertices[q].twin, net.vertices[r].twin = r, q
+    sew(net, f, 1, n, 1)
+    sew(net, np.int64(net.faces[f].beside[0]), 1, np.int64(net.faces[n].beside[2]), 2)
+    sew(net, np.int64(net.faces[f].beside[2]), 2, np.int64(net.faces[n].beside[0]), 1)
+    settle_cut(net, f)
+    settle_cut(net, n)
+    return p
+
+
+@lean
+def settle_cut(net, f):
+    """Settle the halves on both sides of the middle face f of a cut."""
+    g, h = np.int64(net.faces[f].beside[0]), np.int64(net.faces[f].beside[2])
+    settle(net, g)
+    settle(net, h)
+
+
+@lean
 def cut(net, f):
-    """Split a face of odd generation, in three from its border edge; returns the first new vertex."""
+    """Split a face of odd generation, in three from its border edge; returns the first new vertex.
+
+    What is beyond the three edges on the border is left to be said, and the two halves to be settled.
+    """
     face = net.faces[f]
     level = generation(face.state)
     a, b, c = face.corners[0], face.corners[1], face.corners[2]
@@ -122,8 +173,6 @@ def cut(net, f):
     vertices = net.vertices
     vertices[a].around, vertices[b].around, vertices[c].around = g, h, f
     vertices[p].around, vertices[q].around = f, f
-    settle(net, g)
-    settle(net, h)
     return p
 
 
@@ -133,6 +182,6 @@ def put_border_point(net, v, px, py, pz, x, y, z, qx, qy, qz):
     vertex = net.vertices[v]
     vertex.born[0], vertex.born[1], vertex.born[2] = x, y, z
     vertex.limit[0], vertex.limit[1], vertex.limit[2] = qx - px, qy - py, qz - pz
-    vertex.third[0] = px - 2.0 * x + qx
-    vertex.third[1] = py - 2.0 * y + qy
-    vertex.third[2] = pz - 2.0 * z + qz
+    vertex.third[0] = px + qx - 2.0 * x
+    vertex.third[1] = py + qy - 2.0 * y
+    vertex.third[2] = pz + qz - 2.0 * z

@@ -5,11 +5,11 @@ import math
 
 from foveal.base.jit import lean
 
-from ._kernels_sqrt3_layout import BORDER, INSIDE
+from ._kernels_sqrt3_layout import BORDER, CORNER, INSIDE
 
 
 @lean
-def base_points(positions, starts, ring, is_border, vertices, normals, shrinks):
+def base_points(positions, starts, ring, is_border, is_corner, vertices, normals, shrinks):
     """The vectors and normals of the control mesh's vertices."""
     for v in range(len(positions)):
         begin, end = starts[v], starts[v + 1]
@@ -18,12 +18,16 @@ def base_points(positions, starts, ring, is_border, vertices, normals, shrinks):
             vertices[v].born[axis] = positions[v, axis]
         if n == 0:
             continue
-        if is_border[v]:
+        if is_corner[v]:
+            vertices[v].kind = CORNER
+            for axis in range(3):
+                vertices[v].limit[axis] = positions[v, axis]
+        elif is_border[v]:
             vertices[v].kind = BORDER
             p, q = ring[end - 1], ring[begin]
             for axis in range(3):
                 vertices[v].limit[axis] = positions[q, axis] - positions[p, axis]
-                vertices[v].third[axis] = positions[p, axis] - 2.0 * positions[v, axis] + positions[q, axis]
+                vertices[v].third[axis] = positions[p, axis] + positions[q, axis] - 2.0 * positions[v, axis]
         else:
             vertices[v].kind = INSIDE
             share = (4.0 - 2.0 * math.cos(2.0 * math.pi / n)) / 9.0

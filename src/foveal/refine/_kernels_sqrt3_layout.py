@@ -4,6 +4,9 @@
 A face has three corners, counter-clockwise, and a state. A face of generation k is a triangle of uniform
 subdivision's level k. A half of generation k is a third of a split face whose old edge, its edge 0, could not
 be flipped yet, since the face beyond is not split; its corner 2 is the new vertex.
+
+A seam is a sharp edge, along which the mesh is cut open: each side has vertices of its own, and the rules of
+a border. `beside` is negative at both: NONE at a border, at a seam which edge of which face is beyond.
 """
 
 from foveal.base.jit import lean
@@ -14,7 +17,7 @@ NONE = -1
 FREE = -1
 
 #: Kinds of vertices.
-INSIDE, LATE, BORDER, UNMEASURED = 0, 1, 2, 3
+INSIDE, LATE, BORDER, UNMEASURED, CORNER = 0, 1, 2, 3, 4
 
 #: Flags of vertices: its birth face is to be split for itself; for finer ones; it meets the criteria; and
 #: which corners of the birth face are its parents, 8 << k: those born with it.
@@ -22,6 +25,24 @@ WANTED, NEEDED, MEETS, PARENTS, PARENT = 1, 2, 4, 56, 8
 
 #: Slots ever used, how many of them are free, the first free ones; the queue's first place and length.
 FACES, VERTICES, FREE_FACES, FREE_VERTICES, FREE_FACE, FREE_VERTEX, FIRST, QUEUED = 0, 1, 2, 3, 4, 5, 6, 7
+
+
+@lean
+def seam(f, k):
+    """What is beside a face at a seam beyond which is edge k of face f."""
+    return -2 - (3 * f + k)
+
+
+@lean
+def seam_face(word):
+    """The face beyond a seam."""
+    return (-2 - word) // 3
+
+
+@lean
+def seam_edge(word):
+    """Which of its edges is the seam."""
+    return (-2 - word) % 3
 
 
 @lean

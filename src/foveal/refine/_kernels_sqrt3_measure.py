@@ -70,7 +70,7 @@ def beyond(net, b, u):
     if face.state == half(level - 1):
         x, y, z = virtual_apex(net, f)
         return NONE, x, y, z
-    if face.beside[0] == NONE and face.corners[2] == b and net.births[c] != level:
+    if face.beside[0] < 0 and face.corners[2] == b and net.births[c] != level:
         return c, 0.0, 0.0, 0.0
     apex = net.vertices[c]
     return NONE, apex.born[0], apex.born[1], apex.born[2]

@@ -6,7 +6,11 @@ A vertex has three vectors, `born`, `limit` and `third`, and its `kind` says whi
 * INSIDE: where it was born, its limit;
 * LATE (born in a face with a border edge; its ring grows on the step after): where it was born, its
   limit, where it is one level later;
-* BORDER: where it was born, next - previous border vertex, previous - 2 itself + next.
+* BORDER: where it was born, next - previous border vertex, previous - 2 itself + next;
+* CORNER: twice where it stays.
+
+The two sides of a seam run opposite ways, and are to agree in every bit: what is summed along a border is
+summed in an order that does not say which way it runs.
 
 Based on: L. Kobbelt. √3-subdivision. SIGGRAPH 2000, with its border rule (every second step).
 """
@@ -15,7 +19,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_sqrt3_layout import BORDER, LATE, NONE, generation, is_half
+from ._kernels_sqrt3_layout import BORDER, CORNER, LATE, generation, is_half
 
 THIRD = 1.0 / 3.0
 
@@ -67,20 +71,16 @@ def border_neighbour(net, v, level, is_next):
 @lean
 def near_point(net, a, b, level, is_first):
     """The new point near a (is_first), or near b, of the border edge a, b that is cut on an odd level."""
-    ax, ay, az = position(net, a, level)
-    bx, by, bz = position(net, b, level)
-    if is_first:
-        x, y, z = border_neighbour(net, a, level, False)
-        return (
-            (x + 16.0 * ax + 10.0 * bx) / 27.0,
-            (y + 16.0 * ay + 10.0 * by) / 27.0,
-            (z + 16.0 * az + 10.0 * bz) / 27.0,
-        )
-    x, y, z = border_neighbour(net, b, level, True)
+    v, w = (a, b) if is_first else (b, a)
+    vx, vy, vz = position(net, v, level)
+    wx, wy, wz = position(net, w, level)
+    if net.vertices[v].kind == CORNER:  # as if the edge went straight on beyond it
+        return (vx + vx + wx) * THIRD, (vy + vy + wy) * THIRD, (vz + vz + wz) * THIRD
+    x, y, z = border_neighbour(net, v, level, not is_first)
     return (
-        (10.0 * ax + 16.0 * bx + x) / 27.0,
-        (10.0 * ay + 16.0 * by + y) / 27.0,
-        (10.0 * az + 16.0 * bz + z) / 27.0,
+        (x + 16.0 * vx + 10.0 * wx) / 27.0,
+        (y + 16.0 * vy + 10.0 * wy) / 27.0,
+        (z + 16.0 * vz + 10.0 * wz) / 27.0,
     )
 
 
@@ -117,7 +117,7 @@ def virtual_apex(net, h):
 def apex_in_face(net, h, n):
     """The virtual apex of half h, whose mate is the face n."""
     level = generation(net.faces[h].state)
-    if level % 2 == 1 and net.faces[n].beside[0] == NONE:  # it will be cut at its border, its edge 0
+    if level % 2 == 1 and net.faces[n].beside[0] < 0:  # it will be cut at its border, its edge 0
         is_first = (
             net.faces[n].corners[2] == net.faces[h].corners[1]
         )  # beside its edge 2, which ends at the border's first

@@ -5,7 +5,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_sqrt3_layout import BORDER, FREE, UNMEASURED, generation
+from ._kernels_sqrt3_layout import BORDER, FREE, NONE, UNMEASURED, generation
 from ._kernels_sqrt3_measure import measure
 from ._kernels_sqrt3_points import position
 
@@ -29,7 +29,10 @@ def show_faces(net, corners, levels, highest):
 
 @lean
 def show_vertices(net, is_limit, highest, positions, starts):
-    """positions: on the highest level of the faces there, or in the limit; starts: on the level of birth."""
+    """positions: on the highest level of the faces there, or in the limit; starts: on the level of birth.
+
+    At a seam of the faces on both sides, which may have come to different levels.
+    """
     for v in range(len(positions)):
         vertex = net.vertices[v]
         x, y, z = vertex.born[0], vertex.born[1], vertex.born[2]
@@ -38,7 +41,8 @@ def show_vertices(net, is_limit, highest, positions, starts):
             if is_limit:
                 x, y, z = limit(net, np.int64(v))
             else:
-                x, y, z = position(net, v, highest[v])
+                twin = vertex.twin
+                x, y, z = position(net, v, highest[v] if twin == NONE else max(highest[v], highest[twin]))
         positions[v, 0], positions[v, 1], positions[v, 2] = x, y, z
 
 

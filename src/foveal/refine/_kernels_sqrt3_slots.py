@@ -16,6 +16,9 @@ from ._kernels_sqrt3_layout import (
     NONE,
     QUEUED,
     VERTICES,
+    seam,
+    seam_edge,
+    seam_face,
 )
 
 
@@ -90,7 +93,24 @@ def put(net, f, a, b, c, x, y, z, state):
     face = net.faces[f]
     face.corners[0], face.corners[1], face.corners[2] = a, b, c
     face.beside[0], face.beside[1], face.beside[2] = x, y, z
+    if min(x, min(y, z)) < NONE:
+        tell_beyond(net, f)
     set_state(net, f, state)
+
+
+@lean
+def tell_beyond(net, f):
+    """Tell the faces beyond the seams of face f where it is."""
+    for k in range(3):
+        word = np.int64(net.faces[f].beside[k])
+        if word < NONE:
+            net.faces[seam_face(word)].beside[seam_edge(word)] = seam(f, k)
+
+
+@lean
+def sew(net, f, j, n, k):
+    """Edge j of face f and edge k of face n are the two sides of a seam."""
+    net.faces[f].beside[j], net.faces[n].beside[k] = seam(n, k), seam(f, j)
 
 
 @lean
@@ -103,8 +123,8 @@ def set_state(net, f, state):
 
 @lean
 def relink(net, n, u, f):
-    """Tell face n that f is beyond its edge that begins at u."""
-    if n != NONE:
+    """Tell face n, if it is one, that f is beyond its edge that begins at u."""
+    if n >= 0:
         face = net.faces[n]
         for k in range(3):
             if face.corners[k] == u:

@@ -6,7 +6,7 @@ import numpy as np
 from foveal.base.jit import lean
 
 from ._kernels_sqrt3_layout import NONE, corner_at, is_half, whole
-from ._kernels_sqrt3_slots import give_face, give_vertex, put, relink, set_state
+from ._kernels_sqrt3_slots import give_face, give_vertex, put, relink, set_state, sew
 
 
 @lean
@@ -37,9 +37,9 @@ def last_promoted(net, v):
     first = np.int64(net.vertices[v].around)
     for is_back in (False, True):
         f = first
-        while f != NONE:
+        while f >= 0:
             # The middle face of a cut border edge was none: its edge 1 is on the border.
-            if net.faces[f].state == state and not (is_flipped(net, f) and net.faces[f].beside[1] == NONE):
+            if net.faces[f].state == state and not (is_flipped(net, f) and net.faces[f].beside[1] < 0):
                 return f
             k = corner_at(net.faces[f], v)
             f = np.int64(net.faces[f].beside[k if is_back else (k + 2) % 3])
@@ -62,12 +62,10 @@ def unflip_all(net, v):
 
 @lean
 def unsplit(net, v):
-    """Undo the split that made vertex v (and its pair), none of whose faces is split."""
+    """Undo the split that made vertex v (and those with it), none of whose faces is split."""
     unflip_all(net, v)
-    p = np.int64(net.vertices[v].pair)
-    if p != NONE:
-        unflip_all(net, p)
-        uncut(net, v, p)
+    if net.vertices[v].pair != NONE:
+        uncut_all(net, v, np.int64(net.vertices[v].pair))
         return
     vertex = net.vertices[v]
     a, b, c = vertex.triple[0], vertex.triple[1], vertex.triple[2]
@@ -87,8 +85,26 @@ def unsplit(net, v):
 
 
 @lean
+def uncut_all(net, p, q):
+    """Undo the cut of a border edge that made p and q, in either order, and at a seam that beyond."""
+    t = np.int64(net.vertices[p].twin)
+    unflip_all(net, q)
+    if t == NONE:
+        uncut(net, p, q)
+        return
+    u = np.int64(net.vertices[t].pair)
+    unflip_all(net, t)
+    unflip_all(net, u)
+    f, n = uncut(net, p, q), uncut(net, t, u)
+    sew(net, f, 0, n, 0)
+
+
+@lean
 def uncut(net, p, q):
-    """Undo the cut of a border edge that made p and q, in either order, their halves being unflipped."""
+    """Make the three faces of a cut one again, their halves being unflipped; returns it.
+
+    What is beyond its edge on the border is left to be said.
+    """
     vertex = net.vertices[p]
     a, b, c = vertex.triple[0], vertex.triple[1], vertex.triple[2]
     level = net.births[p] - 1
@@ -106,3 +122,4 @@ def uncut(net, p, q):
     give_face(net, h)
     give_vertex(net, p)
     give_vertex(net, q)
+    return f

@@ -16,7 +16,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_sqrt3 import split
+from ._kernels_sqrt3 import beyond_cut, cut_seam, split
 from ._kernels_sqrt3_ask import ROUNDED, examine, examine_beyond, wants_triangle, was_wanted_by_parent
 from ._kernels_sqrt3_layout import (
     FACES,
@@ -31,15 +31,14 @@ from ._kernels_sqrt3_layout import (
     VERTICES,
     WANTED,
     corner_at,
-    generation,
-    half,
     is_half,
 )
 from ._kernels_sqrt3_slots import dequeue, enqueue
 from ._kernels_sqrt3_undo import unsplit
 
-#: Slots that a single examination may use: forced splits go down through the generations.
-ROOM = 512
+#: Slots that a single examination may use: forced splits go down through the generations. Along a seam also
+#: the face beyond may be behind, and what it waits for: there a single split is asked for at a time.
+ROOM, LITTLE_ROOM = 512, 8
 
 
 @lean
@@ -80,14 +79,33 @@ def review(net, order, count, view, limits, drift):
         net.flags[v] = flags
     for i in range(count - 1, -1, -1):
         v = np.int64(order[i])
-        flags = net.flags[v]
-        if flags & (WANTED | NEEDED):
-            for k in range(3):
-                if flags & (PARENT << k):
-                    u = net.vertices[v].triple[k]
-                    net.flags[u] |= NEEDED
-                    if net.vertices[u].pair != NONE:
-                        net.flags[net.vertices[u].pair] |= NEEDED
+        if net.flags[v] & (WANTED | NEEDED):
+            need_parents(net, v)
+            twin = np.int64(net.vertices[v].twin)
+            if twin != NONE:  # wanted on one side of a seam only, it may have come after
+                need(net, twin)
+                need_parents(net, twin)
+
+
+@lean
+def need_parents(net, v):
+    """Keep the splits of which the birth face of vertex v is made."""
+    flags = net.flags[v]
+    for k in range(3):
+        if flags & (PARENT << k):
+            need(net, np.int64(net.vertices[v].triple[k]))
+
+
+@lean
+def need(net, v):
+    """Keep the split that made vertex v, and at a seam that beyond."""
+    net.flags[v] |= NEEDED
+    p, t = np.int64(net.vertices[v].pair), np.int64(net.vertices[v].twin)
+    if p != NONE:
+        net.flags[p] |= NEEDED
+    if t != NONE:
+        net.flags[t] |= NEEDED
+        net.flags[net.vertices[t].pair] |= NEEDED
 
 
 @lean
@@ -96,7 +114,7 @@ def wake(net, v):
     first = np.int64(net.vertices[v].around)
     for is_back in (False, True):
         f = first
-        while f != NONE:
+        while f >= 0:
             if net.faces[f].until == math.inf:
                 net.faces[f].until = 0.0
                 enqueue(net, f)
@@ -127,14 +145,35 @@ def wake_expired(net, drift):
 
 
 @lean
-def split_as(net, f, is_own, until):
-    """Split face f, which is wanted itself (is_own, until which drift) or only needed."""
-    b = split(net, f)
+def split_as(net, f, is_own, until, view, limits, drift):
+    """Split face f, which is wanted itself (is_own, until which drift) or only needed.
+
+    Where it is cut at a seam, the face beyond is split with it.
+    """
+    n = beyond_cut(net, f)
+    if n == NONE:
+        mark(net, split(net, f), is_own, until)
+        return
+    is_other, other = examine(net, n, view, limits, drift)
+    p = cut_seam(net, f, n)
+    mark(net, p, is_own, until)
+    mark(net, np.int64(net.vertices[p].twin), is_other, other)
+
+
+@lean
+def mark(net, b, is_own, until):
+    """Say of a new vertex, and its pair, whether its birth face was wanted split itself."""
     c = np.int64(net.vertices[b].pair)
     net.flags[b] |= MEETS | WANTED if is_own else NEEDED
     net.vertices[b].until = until if is_own else 0.0
     if c != NONE:
         net.flags[c], net.vertices[c].until = net.flags[b], net.vertices[b].until
+
+
+@lean
+def has_room(net, room):
+    """Whether so many slots are left for new faces and vertices."""
+    return net.counts[FACES] + room <= len(net.faces) and net.counts[VERTICES] + room <= len(net.vertices)
 
 
 @lean
@@ -145,40 +184,58 @@ def refine(net, most, chain, view, limits, drift):
     are split when a half's turn comes, and need not be imagined (against last in: half the time).
     """
     while net.counts[QUEUED] > 0 and net.counts[VERTICES] - net.counts[FREE_VERTICES] < most:
-        if net.counts[FACES] + ROOM > len(net.faces) or net.counts[VERTICES] + ROOM > len(net.vertices):
+        if not has_room(net, ROOM):
             return False
         f = dequeue(net)
         if net.faces[f].state == FREE or net.faces[f].until > drift:
             continue
         if is_half(net.faces[f].state):
             is_own, until = examine_beyond(net, f, view, limits, drift)
-            if is_own:
-                force(net, f, chain, view, limits, drift)
-            else:
-                net.faces[f].until = until
-            continue
-        is_own, until = examine(net, f, view, limits, drift)
-        if is_own:
-            split_as(net, f, True, until)
         else:
+            is_own, until = examine(net, f, view, limits, drift)
+        if not is_own:
             net.faces[f].until = until
+        elif waits_for(net, f) == NONE:
+            split_as(net, f, True, until, view, limits, drift)
+        elif not force(net, f, chain, view, limits, drift):
+            enqueue(net, f)
+            return False
     return True
 
 
 @lean
+def waits_for(net, f):
+    """What is to be split, or if a half to become a face, before f is; or NONE.
+
+    A half waits for its mate, or the half of the last generation in its place; a face to be cut at a seam
+    for that beyond, which may be the face before the last split, or still a half of the cut before that.
+    """
+    if is_half(net.faces[f].state):
+        return np.int64(net.faces[f].beside[0])
+    n = beyond_cut(net, f)
+    return n if n != NONE and net.faces[n].state != net.faces[f].state else np.int64(NONE)
+
+
+@lean
 def force(net, f, chain, view, limits, drift):
-    """Split the mate of half f; where a half of the last generation is in its place, its mate first."""
-    level = generation(net.faces[f].state)
-    chain[0], depth = f, 1
+    """Split face f, or make half f a face by splitting its mate, and first what they wait for.
+
+    chain (n, 2): what waits for the next, and the state it had; from one to the third a generation is gone
+    down. Returns False when slots run out: what was done is no less right.
+    """
+    chain[0, 0], chain[0, 1], depth = f, net.faces[f].state, 1
     while depth > 0:
-        h = np.int64(chain[depth - 1])
-        n = np.int64(net.faces[h].beside[0])
-        if net.faces[h].state != half(level - depth + 1):
+        if not has_room(net, LITTLE_ROOM):
+            return False
+        h = np.int64(chain[depth - 1, 0])
+        n = waits_for(net, h)
+        if net.faces[h].state != chain[depth - 1, 1]:
             depth -= 1
-        elif is_half(net.faces[n].state):
-            chain[depth] = n
+        elif n != NONE:
+            chain[depth, 0], chain[depth, 1] = n, net.faces[n].state
             depth += 1
         else:
-            is_own, until = examine(net, n, view, limits, drift)
-            split_as(net, n, is_own, until)
+            is_own, until = examine(net, h, view, limits, drift)
+            split_as(net, h, is_own, until, view, limits, drift)
             depth -= 1
+    return True

@@ -9,8 +9,9 @@ from ._kernels_sqrt3_layout import FIRST
 
 __all__ = ["FACE", "VERTEX", "Net"]
 
-#: A face, in half a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, `until` the
-#: drift of the view up to which it is known not to be wanted split. Of a free slot `beside[0]` is the next.
+#: A face, in half a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, negative at a
+#: border or seam, `until` the drift of the view up to which it is known not to be wanted split. Of a free
+#: slot `beside[0]` is the next.
 FACE = np.dtype(
     [
         ("corners", np.int32, 3),
@@ -23,8 +24,9 @@ FACE = np.dtype(
 )
 
 #: A vertex: where it is at every level (`_kernels_sqrt3_points.py`), the corners of the face in which it was
-#: born, the other vertex born in the same border edge, one of its faces, and up to which drift it is known
-#: whether its birth face meets the criteria. Of a free slot `triple[0]` is the next.
+#: born, the other vertex born in the same border edge, the one at the same place beyond a seam, one of its
+#: faces, and up to which drift it is known whether its birth face meets the criteria. Of a free slot
+#: `triple[0]` is the next.
 VERTEX = np.dtype(
     [
         ("born", np.float64, 3),
@@ -32,6 +34,7 @@ VERTEX = np.dtype(
         ("third", np.float64, 3),
         ("triple", np.int32, 3),
         ("pair", np.int32),
+        ("twin", np.int32),
         ("around", np.int32),
         ("until", np.float32),
         ("kind", np.uint8),

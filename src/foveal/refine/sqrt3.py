@@ -2,13 +2,14 @@
 
 Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent refinement of 3D meshes using
 √3-subdivision (the criteria, the structure without edges or hierarchy); L. Kobbelt. √3-subdivision. SIGGRAPH
-2000 (the surface, adaptive refinement by forced mates).
+2000 (the surface, adaptive refinement by forced mates, the rule of borders); H. Hoppe et al. Piecewise smooth
+surface reconstruction. SIGGRAPH 1994, section 3 (creases and corners).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
@@ -39,7 +40,7 @@ class Update:
     Attributes
     ----------
     faces, vertices : int
-        Of the mesh now.
+        Of the mesh now; a vertex on a sharp edge counts once on each side.
     split, undone : int
         Faces that were split, and splits that were undone.
     is_done : bool
@@ -64,13 +65,19 @@ class Sqrt3:
     ----------
     mesh : TriMesh
         An oriented surface, open or closed.
+    sharp : (k, 2) int, optional
+        The vertices, in [0, n), of edges that stay sharp, as `sharp_edges` finds them; the surface is smooth
+        between. Of a vertex's edges sharp or on the border, two are a crease, which becomes a cubic spline as
+        a border does; at more it is a corner and stays. At one, where a crease ends, it stays as well: Hoppe
+        et al. move it as if inside, but for that no closed form is known to us.
     name : str
         What errors call it.
 
     Raises
     ------
     FovealError
-        If the mesh is no oriented surface; the sentence names the edge or vertex.
+        If the mesh is no oriented surface, or a sharp edge none of its edges; the sentence names the edge or
+        vertex.
 
     Examples
     --------
@@ -82,18 +89,18 @@ class Sqrt3:
     True
     """
 
-    def __init__(self, mesh: TriMesh, /, *, name: str = "mesh") -> None:
-        cage = Cage.of(mesh, name=name)
+    def __init__(self, mesh: TriMesh, /, *, sharp: ArrayLike | None = None, name: str = "mesh") -> None:
+        cage = Cage.of(mesh, sharp=sharp, name=name)
         count, faces = len(cage.positions), len(cage.faces)
         net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
         net.counts[:2] = faces, count
         net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
         net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
         net.vertices["triple"][:count] = net.vertices["pair"][:count] = -1
-        base_kernels.base_points(
-            cage.positions, cage.starts, cage.ring, cage.is_border, net.vertices, net.normals, net.shrinks
-        )
-        self._net = net
+        net.vertices["twin"][:count] = cage.twins
+        surface = cage.positions, cage.starts, cage.ring, cage.is_border, cage.is_corner
+        base_kernels.base_points(*surface, net.vertices, net.normals, net.shrinks)
+        self._net, self._origins = net, cage.origins
         low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
         # All levels lie in the control mesh's convex hull, so in its box.
         self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
@@ -132,7 +139,7 @@ class Sqrt3:
         undone = 0 if is_same else self._coarsen(view, limits)
         before = self._vertices()
         most = before + most_splits if most_splits is not None else np.iinfo(np.int64).max
-        chain = np.empty(2 * MAX_LEVEL + 2, np.int64)
+        chain = np.empty((2 * MAX_LEVEL + 2, 2), np.int64)
         while not kernels.refine(self._net, most, chain, view, limits, self._drift):
             self._net = self._net.grown(2 * len(self._net.faces), 2 * len(self._net.vertices))
         counts, vertices = self._net.counts, self._vertices()
@@ -176,15 +183,26 @@ class Sqrt3:
         self._view, self._limits = view, limits
 
     def mesh(self, *, positions: Placing = "control") -> TriMesh:
-        """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
+        """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh.
+
+        On sharp edges the sides have vertices in common, as in the control mesh.
+        """
         slots = self.slots(positions=positions)
         is_face = self._net.faces["state"][: len(slots.faces)] >= 0
-        is_used = self._net.births[: len(slots.positions)] >= 0
-        index = np.cumsum(is_used, dtype=np.int32) - 1
-        return TriMesh(slots.positions[is_used], index[slots.faces[is_face]].astype(np.int32))
+        count = len(slots.positions)
+        own, twins = np.arange(count, dtype=np.int32), self._net.vertices["twin"][:count]
+        first = np.where(twins >= 0, np.minimum(own, twins), own)  # of the two on a crease
+        first[: len(self._origins)] = self._origins
+        is_shown = (self._net.births[:count] >= 0) & (first == own)
+        index = np.cumsum(is_shown, dtype=np.int32) - 1
+        return TriMesh(slots.positions[is_shown], index[first[slots.faces[is_face]]])
 
     def slots(self, *, positions: Placing = "control") -> Slots:
-        """The mesh as it is, slot by slot: what did not change since the last time is where it was."""
+        """The mesh as it is, slot by slot: what did not change since the last time is where it was.
+
+        Each side of a sharp edge has vertices of its own, at places equal bit for bit, so that normals made
+        of faces are sharp there.
+        """
         faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
         slots = Slots.empty(faces, vertices)
         highest = np.empty(vertices, np.int8)
@@ -202,7 +220,9 @@ class Sqrt3:
         )
 
 
-def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None) -> TriMesh:
+def sqrt3(
+    mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None, sharp: ArrayLike | None = None
+) -> TriMesh:
     """A mesh refined for one view; see `Sqrt3`, which follows a camera.
 
     Examples
@@ -214,6 +234,6 @@ def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None)
     >>> len(sqrt3(tetrahedron(), Camera.of([0, 0, 9], [0, 0, 0]), criteria=everywhere).faces)
     36
     """
-    refined = Sqrt3(mesh)
+    refined = Sqrt3(mesh, sharp=sharp)
     refined.update(camera, criteria=criteria)
     return refined.mesh()
