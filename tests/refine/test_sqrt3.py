@@ -123,6 +123,26 @@ def test_the_mesh_depends_on_the_view_alone(name, seed):
         assert_surface(refined.mesh(), mesh)
 
 
+@pytest.mark.parametrize("name", ["tetrahedron", "icosphere", "bumpy"])
+def test_no_long_edge_is_left_in_view_beside_backs_that_stay_coarse(name):
+    mesh = SURFACES[name]()
+    criteria = Criteria(Region(16, 12.0), Region(16, 12.0), Region(0))
+    for turn in range(12):
+        camera = around(mesh, 0.5 * turn, 0.4 * np.sin(turn), 0.8)
+        refined = Sqrt3(mesh)
+        refined.update(camera, criteria=criteria)
+        found = refined.mesh()
+        corners = found.positions[found.faces]
+        edges = np.roll(corners, -1, axis=1) - corners
+        middle = corners.mean(axis=1)
+        sight = camera.position - middle
+        is_front = (np.cross(edges[:, 0], edges[:, 1]) * sight).sum(axis=1) > 0
+        longest = np.linalg.norm(edges, axis=2).max(axis=1)
+        pixels = camera.pixels_per_radian() * longest / np.linalg.norm(sight, axis=1)
+        # A quarter: asked is the triangle on its level, shown on the highest of its vertices'.
+        assert pixels[is_front].max() <= 1.25 * 12.0
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", ["bumpy", "terrain"])
 def test_work_spread_over_frames_ends_in_the_same_mesh(name, seed):

@@ -2,7 +2,8 @@
 
 from .criteria import Criteria, Region
 from .hidden import Hidden
+from .sharp import sharp_edges
 from .sqrt3 import Sqrt3, Update, sqrt3
 from .uniform import butterfly, loop
 
-__all__ = ["Criteria", "Hidden", "Region", "Sqrt3", "Update", "butterfly", "loop", "sqrt3"]
+__all__ = ["Criteria", "Hidden", "Region", "Sqrt3", "Update", "butterfly", "loop", "sharp_edges", "sqrt3"]

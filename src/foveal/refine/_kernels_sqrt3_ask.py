@@ -3,11 +3,13 @@
 
 import math
 
+import numpy as np
+
 from foveal.base.jit import lean
 
 from ._kernels_criteria import BALL, THIRD, is_wanted, longest_edge
 from ._kernels_hidden import BASIS, is_hidden
-from ._kernels_sqrt3_layout import PARENT, WANTED, generation
+from ._kernels_sqrt3_layout import PARENT, WANTED, corner_at, generation, is_half
 from ._kernels_sqrt3_points import position, virtual_apex
 
 #: What rounding a drift to 32 bits may have added is taken away before.
@@ -71,19 +73,76 @@ def examine(net, f, view, limits, drift):
 
 
 @lean
-def examine_beyond(net, h, view, limits, drift):
-    """The same of the two faces that half h is to be part of: whether one of them is wanted."""
+def wants_third(net, w, x, b, view, limits):
+    """(is wanted, slack) of the third, at edge w, x, of the birth face of vertex b: whether that is to flip.
+
+    That is what is seen as long as the face beyond is not split: the side of a front would stay as long as
+    it was beside a back. Of what was seen of long edges nine in ten were such thirds.
+    """
+    level = net.births[b] - 1
+    wx, wy, wz = position(net, w, level)
+    xx, xy, xz = position(net, x, level)
+    born = net.vertices[b].born
+    # b may have no normal yet; w, the older, is asked in its place.
+    return wants(net, w, x, w, level, view, limits, wx, wy, wz, xx, xy, xz, born[0], born[1], born[2])
+
+
+@lean
+def examine_half(net, h, view, limits, drift):
+    """(is the face beyond to be split, until which drift) of a half.
+
+    It is if the half itself is wanted, or one of the two faces that it is to be part of: for once these are
+    there, from another view, their parent on this side is reason enough to keep and split them.
+    """
     face = net.faces[h]
     level = generation(face.state) + 1
-    w, x, b = face.corners[0], face.corners[1], face.corners[2]
+    w, x, b = np.int64(face.corners[0]), np.int64(face.corners[1]), np.int64(face.corners[2])
     if (net.flags[b] & WANTED) == 0:
         return False, math.inf
+    meets, slack = wants_third(net, w, x, b, view, limits)
+    if meets:
+        return True, 0.0
     dx, dy, dz = virtual_apex(net, h)
     wx, wy, wz = position(net, w, level)
     xx, xy, xz = position(net, x, level)
     bx, by, bz = position(net, b, level)
-    meets, slack = wants(net, w, x, b, level, view, limits, wx, wy, wz, dx, dy, dz, bx, by, bz)
+    meets, other = wants(net, w, x, b, level, view, limits, wx, wy, wz, dx, dy, dz, bx, by, bz)
+    slack = min(slack, other)
     if meets:
         return True, 0.0
     meets, other = wants(net, x, b, w, level, view, limits, xx, xy, xz, bx, by, bz, dx, dy, dz)
     return meets, (drift + min(slack, other)) * ROUNDED
+
+
+@lean
+def is_seen_beyond(net, c, view, limits):
+    """Whether a third beside the birth face of c, that of a wanted vertex, has c kept."""
+    first = np.int64(net.vertices[c].around)
+    for is_back in (False, True):
+        f = first
+        while f >= 0:
+            face = net.faces[f]
+            k = corner_at(face, c)
+            b, n = np.int64(face.corners[(k + 1) % 3]), np.int64(face.beside[k])
+            # An edge between two vertices of one birth is what the flip of a longer one gave.
+            is_flip = n >= 0 and net.births[b] == net.births[c]
+            if is_flip and net.flags[b] & WANTED and is_third_wanted(net, f, n, b, view, limits):
+                return True
+            f = np.int64(face.beside[k if is_back else (k + 2) % 3])
+            if f == first:
+                return False
+    return False
+
+
+@lean
+def is_third_wanted(net, f, n, b, view, limits):
+    """Whether the third of b's birth face is wanted that went, in a flip, into the faces f and n."""
+    meets, _ = wants_third(net, oldest(net, f), oldest(net, n), b, view, limits)
+    return meets
+
+
+@lean
+def oldest(net, f):
+    """The oldest corner of a face, or of that which half f is a third of."""
+    face = net.faces[f]
+    return np.int64(net.vertices[face.corners[2]].triple[0] if is_half(face.state) else face.corners[0])

@@ -2,8 +2,9 @@
 """Which faces of a √3 refinement are split for a view, and bringing the mesh there from wherever it is.
 
 A face is wanted split if it meets the criteria and one of its parents (the split faces that its newest
-corners are from) is wanted. It is needed split if it is wanted or parent of a needed one. Both read
-positions of uniform subdivision only; so the mesh depends on the view, not on the way to it.
+corners are from) is wanted. It is needed split if it is wanted, or parent of a needed one, or beside a
+wanted one whose third at their edge meets the criteria. All this reads positions of uniform subdivision only;
+so the mesh depends on the view, not on the way to it.
 
 Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
 beginning, and a face's and a vertex's `until` say up to which drift an answer holds. On an orbit of one
@@ -17,7 +18,14 @@ import numpy as np
 from foveal.base.jit import lean
 
 from ._kernels_sqrt3 import beyond_cut, cut_seam, split
-from ._kernels_sqrt3_ask import ROUNDED, examine, examine_beyond, wants_triangle, was_wanted_by_parent
+from ._kernels_sqrt3_ask import (
+    ROUNDED,
+    examine,
+    examine_half,
+    is_seen_beyond,
+    wants_triangle,
+    was_wanted_by_parent,
+)
 from ._kernels_sqrt3_layout import (
     FACES,
     FREE,
@@ -79,6 +87,8 @@ def review(net, order, count, view, limits, drift):
         net.flags[v] = flags
     for i in range(count - 1, -1, -1):
         v = np.int64(order[i])
+        if net.flags[v] & (WANTED | NEEDED) == 0 and is_seen_beyond(net, v, view, limits):
+            need(net, v)
         if net.flags[v] & (WANTED | NEEDED):
             need_parents(net, v)
             twin = np.int64(net.vertices[v].twin)
@@ -190,7 +200,7 @@ def refine(net, most, chain, view, limits, drift):
         if net.faces[f].state == FREE or net.faces[f].until > drift:
             continue
         if is_half(net.faces[f].state):
-            is_own, until = examine_beyond(net, f, view, limits, drift)
+            is_own, until = examine_half(net, f, view, limits, drift)
         else:
             is_own, until = examine(net, f, view, limits, drift)
         if not is_own:
