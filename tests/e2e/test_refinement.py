@@ -303,6 +303,39 @@ def test_picks_views_and_pictures_work_as_for_patches(open_page):
     assert len(download.value.path().read_bytes()) > 5000
 
 
+LOSE = """async () => {
+  const lost = document.getElementById("picture").getContext("webgl2").getExtension("WEBGL_lose_context");
+  lost.loseContext();
+  await new Promise(resolve => setTimeout(resolve, 300));
+  lost.restoreContext();
+  await new Promise(resolve => setTimeout(resolve, 300));
+}"""
+
+
+def test_lost_graphics_come_back_with_all_that_was_shown(open_page):
+    page = open_page(PLAIN)
+    before = picture(page)
+    page.evaluate(LOSE)
+    idle(page)
+    assert differs(picture(page), before) < 0.001
+    press(page, "m")
+    press(page, "m")
+    assert differs(picture(page), before) < 0.001
+
+
+def test_no_hole_while_the_mesh_changes(open_page):
+    page = open_page(PLAIN + "&b=black")
+    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
+    inside = np.hypot(rows - HEIGHT / 2, columns - WIDTH / 2) < 100  # well within the ball, which is closed
+    for step in range(24):
+        angle, away = 0.15 * step, 4 - 0.1 * step
+        position = [away * math.sin(angle), 0.2 * away, away * math.cos(angle)]
+        page.evaluate("camera => foveal.setCamera(camera)", FRONT | {"position": position})
+        assert picture(page)[inside].max(axis=1).min() > 15, "the black background shows through"
+    idle(page)
+    assert stats(page)["refinement"]["updates"] > 10
+
+
 def test_a_server_that_ends_is_told_and_the_picture_stays(open_page, site):
     page = open_page(PLAIN, allow=("WebSocket", "ERR_CONNECTION_REFUSED"))
     before = stats(page)["triangles"]
