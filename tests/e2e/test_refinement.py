@@ -8,6 +8,7 @@ import pytest
 from e2e.page import idle, picture, stats
 from foveal.mesh.shapes import bumpy_sphere
 from foveal.refine import Criteria, Region, Sqrt3
+from foveal.refine.session import warm
 from foveal.scene import Scene, View
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import Refinement
@@ -26,7 +27,8 @@ PLAIN = "#v=1&n=0"
 
 @pytest.fixture(scope="module")
 def cage(tmp_path_factory):
-    """A control mesh of 320 triangles."""
+    """A control mesh of 320 triangles; no page waits for its kernels."""
+    warm("sqrt3")
     mesh = bumpy_sphere(2)
     path = tmp_path_factory.mktemp("cage") / "ball.fov"
     write_cage(mesh, path, refinement=Refinement("sqrt3", CRITERIA))
