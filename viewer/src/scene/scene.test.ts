@@ -121,6 +121,17 @@ describe("motion budget", () => {
     }
   });
 
+  it("goes by another time where another rate is wanted", () => {
+    const budget = new MotionBudget();
+    budget.aimMs = 60;
+    run(budget, 10, 100, 60);
+    for (let i = 0; i < 20; i++) {
+      const milliseconds = 10 + (run(budget, 10, 100, 5) * 100) / 1e6;
+      expect(milliseconds).toBeGreaterThan(45);
+      expect(milliseconds).toBeLessThan(70);
+    }
+  });
+
   it("is there in a dozen frames where frames take half a second", () => {
     const budget = new MotionBudget();
     expect(10 + (run(budget, 10, 500, 16) * 500) / 1e6).toBeLessThan(50);
