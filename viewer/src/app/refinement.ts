@@ -6,18 +6,23 @@
 import type { Refinement as Wants } from "../format/cage";
 import type { Problem } from "../format/problem";
 import { deviceHints, refinedTriangles } from "../scene/device";
+import { AIM_MS } from "../scene/motionBudget";
 import { RefinedLayer } from "../scene/refinedLayer";
 import type { Part } from "../scene/stage";
 import { type Turn, turned } from "../scene/turn";
 import type { Cage } from "../stream/cage";
 import type { App } from "./app";
+import { addKeys } from "./dialogs";
 import { InsetFrame } from "./insetFrame";
 import { note, showWarning } from "./notices";
 import { type DeviceChoice, NO_CHOICE, type RefinementChoice, refinementWith } from "./refinementChoice";
 import { makeRefinementPanel } from "./refinementPanel";
 import type { Sheet } from "./sheet";
 import { INITIAL } from "./state";
-import { WORDS } from "./words";
+import { REFINEMENT_KEYS, WORDS } from "./words";
+
+/** A frame may take so much more than wanted: one that comes at the screen's own pace is in time. */
+const RATE_MARGIN = 1.1;
 
 export { openCage } from "../stream/cage";
 
@@ -30,6 +35,7 @@ export class RefinementControl {
   #strip: HTMLElement | undefined;
 
   constructor(private readonly app: App) {
+    addKeys(app.help, REFINEMENT_KEYS);
     this.#inset = new InsetFrame({
       onPlace: () => this.apply(),
       onTurn: (right, up) => this.turn(right, up),
@@ -83,6 +89,8 @@ export class RefinementControl {
     this.#layers.forEach((layer, i) => {
       layer.wants = this.#wantsOf(this.#cages[i]!.refinement);
     });
+    const rate = Math.max(0, ...this.#layers.map((layer) => layer.wants.rate));
+    stage.motion.aimMs = rate > 0 ? (1000 * RATE_MARGIN) / rate : AIM_MS;
     this.#inset.isShown = this.isInsetOn;
     stage.setInset(this.isInsetOn ? this.#inset.place : null, state.insetTurn);
   }
