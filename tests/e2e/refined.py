@@ -1,0 +1,71 @@
+"""A live scene for tests of refinements, and what they share: cameras, keys, sliders, compared pictures."""
+
+import numpy as np
+import pytest
+
+from e2e.page import idle, stats
+from foveal.mesh.shapes import bumpy_sphere
+from foveal.refine import Criteria, Region
+from foveal.refine.session import warm
+from foveal.scene import Scene, View
+from foveal.scene.cage_file import write_cage
+from foveal.scene.refinement import Refinement
+from foveal.scene.scene import Layer
+from foveal.server import start
+from foveal.view.camera import Camera
+
+WIDTH, HEIGHT = 640, 480
+CRITERIA = Criteria(Region(5, 12.0), Region(6, 6.0), Region(0))
+FRONT = {"position": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
+NEAR = {"position": [0.3, 0.2, 1.6], "target": [0.1, 0.1, 0.9], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
+#: Without the picture from elsewhere, which would be in the pictures that are compared.
+PLAIN = "#v=1&n=0"
+
+
+@pytest.fixture(scope="module")
+def cage(tmp_path_factory):
+    """A control mesh of 320 triangles; no page waits for its kernels."""
+    warm("sqrt3")
+    mesh = bumpy_sphere(2)
+    path = tmp_path_factory.mktemp("cage") / "ball.fov"
+    write_cage(mesh, path, refinement=Refinement("sqrt3", CRITERIA))
+    return mesh, path
+
+
+@pytest.fixture
+def site(cage, viewer_folder):
+    """In the place of the static files of the other tests: foveal's server with a live layer."""
+    refinement = Refinement("sqrt3", CRITERIA)
+    views = (View("Side", Camera.of([4, 0, 0], [0, 0, 0])),)
+    scene = Scene("A ball from few triangles", (Layer("ball", cage[1], refinement=refinement),), views)
+    with start(scene, port=0, viewer=viewer_folder) as server:
+        yield server
+
+
+def go(page, camera):
+    page.evaluate("camera => foveal.setCamera(camera)", camera)
+    idle(page)
+    return stats(page)
+
+
+def press(page, key):
+    page.keyboard.press(key)
+    page.evaluate("new Promise(requestAnimationFrame)")
+    idle(page)
+
+
+def differs(a, b):
+    return (np.abs(a.astype(int) - b).max(axis=2) > 20).mean()
+
+
+def slide(page, name, position):
+    """Bring a slider to a position, as a hand would."""
+    page.evaluate(
+        """([id, position]) => {
+          const input = document.getElementById(id);
+          input.value = position;
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        }""",
+        [f"set-{name}", position],
+    )
+    idle(page)
