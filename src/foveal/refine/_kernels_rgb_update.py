@@ -1,0 +1,254 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
+
+An edge is wanted split if it meets the criteria and one of its parents is wanted. It is needed split if it is
+wanted, or if it is a side of a triangle that a needed one's split takes: then it is the one that an end or
+apex, born on the needed edge's level, splits. Both read positions of uniform subdivision only, so the mesh
+depends on the view and not on the way to it.
+
+Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the beginning,
+and `until` says up to which drift an answer holds.
+"""
+
+import math
+
+import numpy as np
+
+from ._kernels_rgb_address import middle_key, slot_of
+from ._kernels_rgb_criteria import has_wanted_parent, wants_edge
+from ._kernels_rgb_known import ASK_BORN
+from ._kernels_rgb_layout import (
+    BLUE,
+    BORN,
+    FACES,
+    FREE_CODE,
+    GREEN,
+    MEETS,
+    MERGES,
+    NEEDED,
+    NONE,
+    PRESENT,
+    PRESENT_COUNT,
+    SPLITS,
+    VERTICES,
+    WAITING,
+    WANTED,
+    colour,
+    corner_at,
+    dequeue,
+    edge_level,
+    enqueue,
+    enqueue_around,
+    find_edge,
+    lean,
+)
+from ._kernels_rgb_merge import merge_topology
+from ._kernels_rgb_points import ensure, set_normal
+from ._kernels_rgb_split import opposite, split_topology
+
+#: Slots that examining a face may use: forced splits and stencils go down through the levels.
+ROOM = 1024
+
+
+@lean
+def split_edge(net, f, k):
+    """Split edge k of face f, both of whose faces allow it; returns the new vertex."""
+    face = net.faces[f]
+    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+    n = np.int64(face.beside[k])
+    c = opposite(net, f, k)
+    d = np.int64(NONE) if n == NONE else opposite(net, n, corner_at(net.faces[n], b))
+    v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
+    vertex = net.vertices[v]
+    vertex.diamond[0], vertex.diamond[1], vertex.diamond[2], vertex.diamond[3] = a, b, c, d
+    net.flags[v] |= PRESENT
+    if net.flags[v] & BORN == 0:
+        ensure(net, v, ASK_BORN)
+    set_normal(net, v)
+    vertex.until = 0.0
+    split_topology(net, f, k, v)
+    net.counts[SPLITS] += 1
+    net.counts[PRESENT_COUNT] += 1
+    return v
+
+
+@lean
+def merge_vertex(net, v):
+    """Take a mergeable vertex out of the mesh; what is known of it is kept."""
+    merge_topology(net, v)
+    net.flags[v] &= ~(PRESENT | WANTED | NEEDED | MEETS)
+    net.vertices[v].around = NONE
+    net.counts[MERGES] += 1
+    net.counts[PRESENT_COUNT] -= 1
+
+
+@lean
+def obstacle(net, f, k):
+    """3 g + h for the edge that is to be split before edge k of face f can be, or NONE."""
+    face = net.faces[f]
+    shade = colour(face.code)
+    if shade == GREEN:
+        return np.int64(NONE)
+    if shade == BLUE:
+        g = np.int64(face.beside[0])
+        return 3 * g + colour(net.faces[g].code)
+    return np.int64(NONE) if shade == k else 3 * f + shade
+
+
+@lean
+def force(net, f, k, view, limits, drift):
+    """Split edge k of face f, and before it whatever has to be; False if there are too few slots left."""
+    chain = net.chain
+    chain[0, 0], chain[0, 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
+    depth = 1
+    while depth > 0:
+        if not has_room(net):
+            return False
+        h = find_edge(net, np.int64(chain[depth - 1, 0]), np.int64(chain[depth - 1, 1]))
+        if h == NONE:
+            depth -= 1
+            continue
+        g, i = h // 3, h % 3
+        o = obstacle(net, g, i)
+        n = np.int64(net.faces[g].beside[i])
+        if o == NONE and n != NONE:
+            o = obstacle(net, n, corner_at(net.faces[n], net.faces[g].corners[(i + 1) % 3]))
+        if o != NONE:
+            face, j = net.faces[o // 3], o % 3
+            chain[depth, 0], chain[depth, 1] = face.corners[j], face.corners[(j + 1) % 3]
+            depth += 1
+            continue
+        judge(net, split_edge(net, g, i), view, limits, drift)
+        depth -= 1
+    return True
+
+
+@lean
+def judge(net, v, view, limits, drift):
+    """Set a vertex's flags by its edge's parents and the criteria; what is known of the criteria is used."""
+    vertex = net.vertices[v]
+    a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
+    level = np.int64(net.births[v]) - 1
+    if not has_wanted_parent(net, a, b, level):
+        net.flags[v] &= ~WANTED
+        return
+    if vertex.until <= drift:
+        meets, slack = wants_edge(net, a, b, level, view, limits)
+        net.flags[v] = (net.flags[v] | MEETS) if meets else (net.flags[v] & ~MEETS)
+        vertex.until = drift + slack
+    if net.flags[v] & MEETS:
+        net.flags[v] |= WANTED
+    else:
+        net.flags[v] &= ~WANTED
+
+
+@lean
+def has_room(net):
+    """Whether slots will do for what one step may take."""
+    return (
+        net.counts[FACES] + ROOM <= len(net.faces) and net.counts[VERTICES] + ROOM <= len(net.vertices)
+    )
+
+
+@lean
+def review(net, order, begin, view, limits, drift):
+    """Set WANTED anew for the vertices of `order`, by rising birth, from the begin-th on.
+
+    Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted the edges at it may be.
+    """
+    for i in range(begin, len(order)):
+        if not has_room(net):
+            return i
+        v = np.int64(order[i])
+        was_wanted = net.flags[v] & WANTED
+        judge(net, v, view, limits, drift)
+        if net.flags[v] & WANTED and not was_wanted:
+            enqueue_around(net, v)
+    return len(order)
+
+
+@lean
+def mark_needed(net, order):
+    """Set NEEDED anew, from the last born to the first."""
+    for v in order:
+        net.flags[v] &= ~NEEDED
+    for i in range(len(order) - 1, -1, -1):
+        v = order[i]
+        if net.flags[v] & (WANTED | NEEDED):
+            diamond = net.vertices[v].diamond
+            level = net.births[v] - 1
+            for k in range(4):
+                u = diamond[k]
+                if u != NONE and level > 0 and net.births[u] == level:
+                    net.flags[u] |= NEEDED
+
+
+@lean
+def sort_by_birth(net, starts, order):
+    """order: the vertices in the mesh born after level 0, by birth; returns how many."""
+    starts[:] = 0
+    first, count = len(net.shrinks), net.counts[VERTICES]
+    for v in range(first, count):
+        if net.flags[v] & PRESENT:
+            starts[net.births[v] + 1] += 1
+    for i in range(1, len(starts)):
+        starts[i] += starts[i - 1]
+    for v in range(first, count):
+        if net.flags[v] & PRESENT:
+            order[starts[net.births[v]]] = v
+            starts[net.births[v]] += 1
+    return starts[len(starts) - 1]
+
+
+@lean
+def coarsen(net, order):
+    """Take out the vertices that are not needed, finest first."""
+    for i in range(len(order) - 1, -1, -1):
+        v = np.int64(order[i])
+        if net.flags[v] & (WANTED | NEEDED) == 0:
+            merge_vertex(net, v)
+
+
+@lean
+def enqueue_expired(net, drift):
+    """Put the faces whose answers no longer hold into the queue."""
+    for f in range(net.counts[FACES]):
+        if net.faces[f].code != FREE_CODE and net.faces[f].until <= drift:
+            enqueue(net, f)
+
+
+@lean
+def is_asked_at(face, k):
+    """Whether it is this face that asks its green edge k: each edge is asked from one side only."""
+    return face.beside[k] == NONE or face.corners[k] < face.corners[(k + 1) % 3]
+
+
+@lean
+def refine(net, view, limits, drift):
+    """Split what is wanted, beginning with the faces in the queue; False when slots run out on the way."""
+    while net.counts[WAITING] > 0:
+        if not has_room(net):
+            return False
+        f = dequeue(net)
+        face = net.faces[f]
+        if face.code == FREE_CODE or face.until > drift:
+            continue
+        until = math.inf
+        for k in range(3):
+            level = edge_level(face.code, k)
+            if level == NONE or not is_asked_at(face, k):
+                continue
+            a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+            if not has_wanted_parent(net, a, b, level):
+                continue  # should a parent become wanted, this will be asked again
+            meets, slack = wants_edge(net, a, b, level, view, limits)
+            if meets:
+                until = -1.0
+                if not force(net, f, k, view, limits, drift):
+                    enqueue(net, f)
+                    return False
+                break  # the face is another now, and in the queue
+            until = min(until, drift + slack)
+        if until > 0.0:
+            face.until = until
+    return True
