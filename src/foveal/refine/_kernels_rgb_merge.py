@@ -72,20 +72,27 @@ def is_mergeable(net, v):
 
 
 @lean
+def ready_side(net, v, a, b):
+    """The face at v and b, on the side where the faces from b to a are two now, or three green ones."""
+    f = find_edge(net, v, b) // 3
+    g = next_around(net, f, v)
+    if last_corner(net, g, v) == a:
+        return f
+    h = next_around(net, g, v)
+    if colour(net.faces[f].code) != GREEN:  # R, B, G
+        exchange(net, g, f)
+        return g
+    if colour(net.faces[h].code) != GREEN:  # G, B, R
+        exchange(net, g, h)
+    return f
+
+
+@lean
 def merge_side(net, v, a, b, f):
     """Make one face of the faces at v from b, in face f, to a; returns it, its edge from a to b to be linked."""
     g = next_around(net, f, v)
     if last_corner(net, g, v) != a:
-        h = next_around(net, g, v)
-        shade = colour(net.faces[f].code)
-        if shade == GREEN and colour(net.faces[h].code) == GREEN:
-            return merge_three(net, v, a, b, f, g, h)
-        if shade == GREEN:  # G, B, R
-            exchange(net, g, h)
-            g = next_around(net, f, v)
-        else:  # R, B, G
-            exchange(net, g, f)
-            f, g = g, h
+        return merge_three(net, v, a, b, f, g, next_around(net, g, v))
     one, two = net.faces[f], net.faces[g]
     i, j = corner_at(one, v), corner_at(two, v)
     c = one.corners[(i + 2) % 3]
@@ -128,9 +135,10 @@ def merge_topology(net, v):
     """Take vertex v out of the mesh; it is mergeable."""
     diamond = net.vertices[v].diamond
     a, b = np.int64(diamond[0]), np.int64(diamond[1])
-    f = find_edge(net, v, b) // 3
+    f = ready_side(net, v, a, b)
     if diamond[3] == NONE:
         merge_side(net, v, a, b, f)
         return
-    n = merge_side(net, v, b, a, find_edge(net, v, a) // 3)
+    n = ready_side(net, v, b, a)
+    n = merge_side(net, v, b, a, n)
     link(net, merge_side(net, v, a, b, f), a, n, b)
