@@ -14,7 +14,7 @@ class Hierarchy:
     def __init__(self, positions, faces, depth, scheme="loop"):
         self.faces = [[tuple(f) for f in faces.tolist()]]
         self.positions = [dict(enumerate(positions))]
-        self.born = {v: 0 for v in range(len(positions))}
+        self.born = dict.fromkeys(range(len(positions)), 0)
         self.key = {v: (-1, v, 0) for v in range(len(positions))}
         self._places = {
             v: {i: tuple(Fraction(w == v) for w in f) for i, f in enumerate(self.faces[0]) if v in f}

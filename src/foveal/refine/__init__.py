@@ -2,6 +2,18 @@
 
 from .criteria import Criteria, Region
 from .rgb import Rgb, rgb
+from .rgb_edges import Edges, by_distance, by_length
 from .sqrt3 import Sqrt3, Update, sqrt3
 
-__all__ = ["Criteria", "Region", "Rgb", "Sqrt3", "Update", "rgb", "sqrt3"]
+__all__ = [
+    "Criteria",
+    "Edges",
+    "Region",
+    "Rgb",
+    "Sqrt3",
+    "Update",
+    "by_distance",
+    "by_length",
+    "rgb",
+    "sqrt3",
+]

@@ -42,7 +42,9 @@ def base_vertices(net, positions, starts, ring, is_border):
             if n == 0 or not is_loop:
                 continue
             if is_border[v]:
-                vertex.limit[axis] = (4.0 * p + (positions[ring[begin], axis] + positions[ring[end - 1], axis])) / 6.0
+                vertex.limit[axis] = (
+                    4.0 * p + (positions[ring[begin], axis] + positions[ring[end - 1], axis])
+                ) / 6.0
                 continue
             total = 0.0
             for i in range(begin, end):
@@ -76,7 +78,11 @@ def base_normals(net):
 @lean
 def area(net, f):
     """Twice the area vector of a triangle of the control mesh."""
-    a, b, c = net.vertices[net.cage[f, 0]].born, net.vertices[net.cage[f, 1]].born, net.vertices[net.cage[f, 2]].born
+    a, b, c = (
+        net.vertices[net.cage[f, 0]].born,
+        net.vertices[net.cage[f, 1]].born,
+        net.vertices[net.cage[f, 2]].born,
+    )
     return cross(b[0] - a[0], b[1] - a[1], b[2] - a[2], c[0] - a[0], c[1] - a[1], c[2] - a[2])
 
 

@@ -16,10 +16,10 @@ SIGGRAPH 1996, with w = 0.
 
 import numpy as np
 
-from ._kernels_rgb_turn import turn
 from ._kernels_rgb_address import LEFT, RIGHT, SIDE, at, side
 from ._kernels_rgb_known import push_unknown, set_born
 from ._kernels_rgb_layout import LIMIT, NONE, lean
+from ._kernels_rgb_turn import turn
 
 
 @lean
@@ -157,7 +157,10 @@ def butterfly_at(net, v, axis):
     if side(net, v, RIGHT)[0] == NONE:
         face, e, c, x, y, s, step = side(net, v, LEFT)
         q = net.vertices[at(net, face, e, c, x - step, y + step)].born[axis]
-        before, after = net.vertices[along(net, v, True)].born[axis], net.vertices[along(net, v, False)].born[axis]
+        before, after = (
+            net.vertices[along(net, v, True)].born[axis],
+            net.vertices[along(net, v, False)].born[axis],
+        )
         return 0.5625 * (p + q) - 0.0625 * (before + after)
     q = net.vertices[part(net, v, RIGHT, 0)].born[axis]
     step = SIDE >> (np.int64(net.births[v]) - 1)

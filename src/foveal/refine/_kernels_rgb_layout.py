@@ -60,7 +60,9 @@ def edge_level(code, k):
         return np.int64(code >> 2)
     if k == 0:
         return np.int64(NONE)
-    return np.int64(code >> 2) + (0 if k == shade else 1)  # the long edge is edge 1 or 2, as is its red's code
+    return np.int64(code >> 2) + (
+        0 if k == shade else 1
+    )  # the long edge is edge 1 or 2, as is its red's code
 
 
 @lean

@@ -4,17 +4,19 @@
 import numpy as np
 
 from ._kernels_rgb_address import remove
+from ._kernels_rgb_known import ASK_LIMIT
 from ._kernels_rgb_layout import (
     FACES,
     FREE,
     FREE_CODE,
     FREE_VERTEX,
     IN_USE,
+    LIMIT,
     PRESENT,
     VERTICES,
     lean,
 )
-from ._kernels_rgb_points import ensure_at, position
+from ._kernels_rgb_points import ensure, ensure_at, position
 from ._kernels_rgb_update import has_room
 
 
@@ -34,15 +36,22 @@ def shown_levels(net, levels):
 
 
 @lean
-def place_all(net, levels, begin, out):
+def place_all(net, levels, begin, is_limit, out):
     """out[v]: where the vertices of the mesh stand, from `begin` on; where it stopped for want of slots."""
-    for v in range(begin, len(levels)):
-        if levels[v] == FREE:
+    for i in range(begin, len(levels)):
+        if levels[i] == FREE:
             continue
         if not has_room(net):
-            return v
-        ensure_at(net, np.int64(v), np.int64(levels[v]))
-        out[v, 0], out[v, 1], out[v, 2] = position(net, np.int64(v), np.int64(levels[v]))
+            return i
+        v = np.int64(i)
+        if is_limit:
+            if net.flags[v] & LIMIT == 0:
+                ensure(net, v, ASK_LIMIT)
+            limit = net.vertices[v].limit
+            out[v, 0], out[v, 1], out[v, 2] = limit[0], limit[1], limit[2]
+        else:
+            ensure_at(net, v, np.int64(levels[v]))
+            out[v, 0], out[v, 1], out[v, 2] = position(net, v, np.int64(levels[v]))
     return len(levels)
 
 

@@ -21,6 +21,7 @@ from ._kernels_rgb_layout import (
     BLUE,
     BORN,
     FACES,
+    FACES_IN_USE,
     FREE_CODE,
     GREEN,
     MEETS,
@@ -145,9 +146,7 @@ def judge(net, v, view, limits, drift):
 @lean
 def has_room(net):
     """Whether slots will do for what one step may take."""
-    return (
-        net.counts[FACES] + ROOM <= len(net.faces) and net.counts[VERTICES] + ROOM <= len(net.vertices)
-    )
+    return net.counts[FACES] + ROOM <= len(net.faces) and net.counts[VERTICES] + ROOM <= len(net.vertices)
 
 
 @lean
@@ -223,12 +222,18 @@ def is_asked_at(face, k):
     return face.beside[k] == NONE or face.corners[k] < face.corners[(k + 1) % 3]
 
 
+#: How `refine` ended.
+DONE, NO_ROOM, ENOUGH = 0, 1, 2
+
+
 @lean
-def refine(net, view, limits, drift):
-    """Split what is wanted, beginning with the faces in the queue; False when slots run out on the way."""
+def refine(net, view, limits, drift, most_splits, most_faces):
+    """Split what is wanted, beginning with the faces in the queue, up to so many splits ever and faces."""
     while net.counts[WAITING] > 0:
         if not has_room(net):
-            return False
+            return NO_ROOM
+        if net.counts[SPLITS] >= most_splits or net.counts[FACES_IN_USE] > most_faces:
+            return ENOUGH
         f = dequeue(net)
         face = net.faces[f]
         if face.code == FREE_CODE or face.until > drift:
@@ -246,9 +251,9 @@ def refine(net, view, limits, drift):
                 until = -1.0
                 if not force(net, f, k, view, limits, drift):
                     enqueue(net, f)
-                    return False
+                    return NO_ROOM
                 break  # the face is another now, and in the queue
             until = min(until, drift + slack)
         if until > 0.0:
             face.until = until
-    return True
+    return DONE

@@ -5,9 +5,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from foveal.base.errors import FovealError
+from foveal.mesh.trimesh import TriMesh
+
 from .cage import Cage
 
-__all__ = ["FACE", "MAX_BASE", "VERTEX", "RgbNet"]
+__all__ = ["FACE", "MAX_BASE", "VERTEX", "RgbNet", "check_base"]
 
 #: A face. `beside[k]` is the face beyond the edge from corner k to k + 1, `base` the control mesh's triangle
 #: it lies in, `code` its colour and level, `until` the drift of the view up to which none of its edges is
@@ -137,9 +140,16 @@ def _mates(cage: Cage) -> NDArray[np.int32]:
         for h in range(3):
             g = cage.beside[:, k]
             is_mate = (
-                (g >= 0)
-                & (faces[g, h] == faces[:, (k + 1) % 3])
-                & (faces[g, (h + 1) % 3] == faces[:, k])
+                (g >= 0) & (faces[g, h] == faces[:, (k + 1) % 3]) & (faces[g, (h + 1) % 3] == faces[:, k])
             )
             mates[is_mate, k] = 3 * g[is_mate] + h
     return mates
+
+
+def check_base(mesh: TriMesh, name: str) -> None:
+    """Refuse a control mesh with more triangles than addresses have room for."""
+    if len(mesh.faces) > MAX_BASE:
+        raise FovealError(
+            f"{name}: {len(mesh.faces)} triangles are too many for a control mesh, of which there may be "
+            f"{MAX_BASE}. Simplify it first, or `build` it as it is."
+        )
