@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ._kernels_rgb_address import LEVELS, middle_key, slot_of
-from ._kernels_rgb_criteria import has_wanted_parent
+from ._kernels_rgb_criteria import has_wanted_parents
 from ._kernels_rgb_known import ASK_BORN
 from ._kernels_rgb_layout import (
     BORN,
@@ -62,7 +62,7 @@ def set_meets(net, order, answers):
 
 @lean
 def candidates(net, pairs, ends, levels, middles):
-    """Write the edges with a wanted parent at the faces in the queue, until slots or places run out."""
+    """Write the edges that are there for themselves at the faces in the queue, until slots or places run out."""
     count = 0
     while net.counts[WAITING] > 0 and count + 3 <= len(pairs) and has_room(net):
         f = dequeue(net)
@@ -75,7 +75,7 @@ def candidates(net, pairs, ends, levels, middles):
             if level == NONE or level >= LEVELS or not is_asked_at(face, k):
                 continue
             a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
-            if has_wanted_parent(net, a, b, level):
+            if has_wanted_parents(net, a, b, level):
                 v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
                 describe(net, a, b, level, v, count, ends, levels, middles)
                 pairs[count, 0], pairs[count, 1] = a, b
@@ -88,6 +88,6 @@ def split_pairs(net, pairs, begin, view, limits):
     """Split these edges from the begin-th on, if nothing has forced that yet; where it stopped for want of slots."""
     for i in range(begin, len(pairs)):
         h = find_edge(net, np.int64(pairs[i, 0]), np.int64(pairs[i, 1]))
-        if h != NONE and not force(net, h // 3, h % 3, view, limits, -1.0):
+        if h != NONE and not force(net, h // 3, h % 3, 0.0, view, limits, -1.0):
             return i
     return len(pairs)

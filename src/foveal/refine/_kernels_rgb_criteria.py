@@ -28,15 +28,16 @@ from ._kernels_rgb_points import ensure_at, position
 
 
 @lean
-def has_wanted_parent(net, a, b, level):
-    """Whether the edge a, b of a level has a parent edge that is wanted, or needs none.
+def has_wanted_parents(net, a, b, level):
+    """Whether the edge a, b of a level is there for itself: all that it takes is wanted, or it takes nothing.
 
-    A half edge's parent is the edge it is half of; an inner edge has those whose middles it joins.
+    A half edge takes the split of the edge it is half of; an inner edge of both whose middles it joins. (Were one
+    enough, edges would be wanted that are not in the mesh yet, beside every end of a refined part.)
     """
     if level == 0:
         return True
-    return (net.births[a] == level and (net.flags[a] & WANTED) != 0) or (
-        net.births[b] == level and (net.flags[b] & WANTED) != 0
+    return (net.births[a] != level or (net.flags[a] & WANTED) != 0) and (
+        net.births[b] != level or (net.flags[b] & WANTED) != 0
     )
 
 
@@ -81,8 +82,8 @@ def wants_edge(net, a, b, level, view, limits):
     spread = spread_of(net, a, b, level)
     front, back = min(one, two) - spread * far, -max(one, two) - spread * far
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
-    # It changes at most three times as quickly as the eye moves, as a spread is at most 2.
-    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / 3.0)
+    # As the eye moves, a facing changes as quickly at most, and its distance times the spread that much quicker.
+    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
     # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
     bend = max(1.0 - (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), 0.125 * spread * spread)
     if level >= limits[kind, ITERATIONS] or bend < limits[kind, BEND]:

@@ -34,4 +34,7 @@ def set_born(net, v, x, y, z):
     """Where a vertex was born."""
     vertex = net.vertices[v]
     vertex.born[0], vertex.born[1], vertex.born[2] = x, y, z
+    for axis in range(3):  # Loop's surface stays in the control mesh's box, the butterfly's does not
+        net.box[0, axis] = min(net.box[0, axis], vertex.born[axis])
+        net.box[1, axis] = max(net.box[1, axis], vertex.born[axis])
     net.flags[v] |= BORN

@@ -160,13 +160,14 @@ def find_edge(net, a, b):
 
 
 @lean
-def enqueue_around(net, v):
-    """Put the faces at a vertex into the queue."""
+def ask_around(net, v):
+    """Have the edges of all faces at a vertex asked anew."""
     first = np.int64(net.vertices[v].around)
     f = first
     while f != NONE:
         enqueue(net, f)
         face = net.faces[f]
+        face.until = 0.0
         f = np.int64(face.beside[(corner_at(face, v) + 2) % 3])
         if f == first:
             return
@@ -174,4 +175,5 @@ def enqueue_around(net, v):
     while f != NONE:
         enqueue(net, f)
         face = net.faces[f]
+        face.until = 0.0
         f = np.int64(face.beside[corner_at(face, v)])

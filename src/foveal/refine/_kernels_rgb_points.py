@@ -132,31 +132,6 @@ def loop_limit(net, v):
 
 
 @lean
-def set_normal(net, v):
-    """The normal of the two triangles v is born between, and how far theirs and its ends' are from it."""
-    a, b, c, d = diamond_of(net, v)
-    level = np.int64(net.births[v]) - 1
-    ax, ay, az = position(net, a, level)
-    bx, by, bz = position(net, b, level)
-    cx, cy, cz = position(net, c, level)
-    ux, uy, uz = bx - ax, by - ay, bz - az
-    lx, ly, lz = cross(ux, uy, uz, cx - 0.5 * (ax + bx), cy - 0.5 * (ay + by), cz - 0.5 * (az + bz))
-    lx, ly, lz = unit(lx, ly, lz)
-    rx, ry, rz = lx, ly, lz
-    if d != NONE:
-        dx, dy, dz = position(net, d, level)
-        rx, ry, rz = cross(ux, uy, uz, 0.5 * (ax + bx) - dx, 0.5 * (ay + by) - dy, 0.5 * (az + bz) - dz)
-        rx, ry, rz = unit(rx, ry, rz)
-    x, y, z = unit(lx + rx, ly + ry, lz + rz)
-    vertex = net.vertices[v]
-    vertex.normal[0], vertex.normal[1], vertex.normal[2] = x, y, z
-    far = max(away(lx, ly, lz, x, y, z), away(rx, ry, rz, x, y, z))
-    n, m = net.vertices[a].normal, net.vertices[b].normal
-    far = max(far, max(away(n[0], n[1], n[2], x, y, z), away(m[0], m[1], m[2], x, y, z)))
-    vertex.spread = math.sqrt(far)
-
-
-@lean
 def cross(ax, ay, az, bx, by, bz):
     """The cross product."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -208,3 +183,31 @@ def ensure_at(net, v, level):
     """Compute what it takes to say where v is on a level."""
     if not is_known(net, v, level):
         ensure(net, v, ASK_BORN if net.births[v] == level else ASK_LIMIT)
+
+
+@lean
+def set_normal(net, v):
+    """The normal of the two triangles v is born between, and how far theirs and its ends' are from it."""
+    a, b, c, d = diamond_of(net, v)
+    level = np.int64(net.births[v]) - 1
+    for w in (a, b, c, d):  # the butterfly, and what was remembered of v, may have done without
+        if w != NONE:
+            ensure_at(net, w, level)
+    ax, ay, az = position(net, a, level)
+    bx, by, bz = position(net, b, level)
+    cx, cy, cz = position(net, c, level)
+    ux, uy, uz = bx - ax, by - ay, bz - az
+    lx, ly, lz = cross(ux, uy, uz, cx - 0.5 * (ax + bx), cy - 0.5 * (ay + by), cz - 0.5 * (az + bz))
+    lx, ly, lz = unit(lx, ly, lz)
+    rx, ry, rz = lx, ly, lz
+    if d != NONE:
+        dx, dy, dz = position(net, d, level)
+        rx, ry, rz = cross(ux, uy, uz, 0.5 * (ax + bx) - dx, 0.5 * (ay + by) - dy, 0.5 * (az + bz) - dz)
+        rx, ry, rz = unit(rx, ry, rz)
+    x, y, z = unit(lx + rx, ly + ry, lz + rz)
+    vertex = net.vertices[v]
+    vertex.normal[0], vertex.normal[1], vertex.normal[2] = x, y, z
+    far = max(away(lx, ly, lz, x, y, z), away(rx, ry, rz, x, y, z))
+    n, m = net.vertices[a].normal, net.vertices[b].normal
+    far = max(far, max(away(n[0], n[1], n[2], x, y, z), away(m[0], m[1], m[2], x, y, z)))
+    vertex.spread = math.sqrt(far)

@@ -1,7 +1,7 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
 
-An edge is wanted split if it meets the criteria and one of its parents is wanted. It is needed split if it is
+An edge is wanted split if it meets the criteria and the splits that make it are wanted. It is needed split if it is
 wanted, or if it is a side of a triangle that a needed one's split takes: then it is the one that an end or
 apex, born on the needed edge's level, splits. Both read positions of uniform subdivision only, so the mesh
 depends on the view and not on the way to it.
@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from ._kernels_rgb_address import middle_key, slot_of
-from ._kernels_rgb_criteria import has_wanted_parent, wants_edge
+from ._kernels_rgb_criteria import has_wanted_parents, wants_edge
 from ._kernels_rgb_known import ASK_BORN
 from ._kernels_rgb_layout import (
     BLUE,
@@ -34,12 +34,12 @@ from ._kernels_rgb_layout import (
     VERTICES,
     WAITING,
     WANTED,
+    ask_around,
     colour,
     corner_at,
     dequeue,
     edge_level,
     enqueue,
-    enqueue_around,
     find_edge,
     lean,
 )
@@ -97,8 +97,11 @@ def obstacle(net, f, k):
 
 
 @lean
-def force(net, f, k, view, limits, drift):
-    """Split edge k of face f, and before it whatever has to be; False if there are too few slots left."""
+def force(net, f, k, until, view, limits, drift):
+    """Split edge k of face f, and before it whatever has to be; False if there are too few slots left.
+
+    That edge itself is known to be wanted up to a drift of `until`, or not known to be if that is 0.
+    """
     chain = net.chain
     chain[0, 0], chain[0, 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
     depth = 1
@@ -119,8 +122,13 @@ def force(net, f, k, view, limits, drift):
             chain[depth, 0], chain[depth, 1] = face.corners[j], face.corners[(j + 1) % 3]
             depth += 1
             continue
-        judge(net, split_edge(net, g, i), view, limits, drift)
+        v = split_edge(net, g, i)
         depth -= 1
+        if depth == 0 and until > 0.0:
+            net.flags[v] |= WANTED | MEETS
+            net.vertices[v].until = until
+        else:
+            judge(net, v, view, limits, drift)
     return True
 
 
@@ -130,7 +138,7 @@ def judge(net, v, view, limits, drift):
     vertex = net.vertices[v]
     a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
     level = np.int64(net.births[v]) - 1
-    if not has_wanted_parent(net, a, b, level):
+    if not has_wanted_parents(net, a, b, level):
         net.flags[v] &= ~WANTED
         return
     if vertex.until <= drift:
@@ -162,7 +170,7 @@ def review(net, order, begin, view, limits, drift):
         was_wanted = net.flags[v] & WANTED
         judge(net, v, view, limits, drift)
         if net.flags[v] & WANTED and not was_wanted:
-            enqueue_around(net, v)
+            ask_around(net, v)
     return len(order)
 
 
@@ -244,12 +252,12 @@ def refine(net, view, limits, drift, most_splits, most_faces):
             if level == NONE or not is_asked_at(face, k):
                 continue
             a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
-            if not has_wanted_parent(net, a, b, level):
+            if not has_wanted_parents(net, a, b, level):
                 continue  # should a parent become wanted, this will be asked again
             meets, slack = wants_edge(net, a, b, level, view, limits)
             if meets:
                 until = -1.0
-                if not force(net, f, k, view, limits, drift):
+                if not force(net, f, k, drift + slack, view, limits, drift):
                     enqueue(net, f)
                     return NO_ROOM
                 break  # the face is another now, and in the queue

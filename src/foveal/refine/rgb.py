@@ -87,11 +87,6 @@ class Rgb:
         cage = Cage.of(mesh, name=name)
         self._state = State(cage, LOOP if scheme == "loop" else BUTTERFLY)
         self._cached, self._step = cached, 0
-        low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
-        self._size = float(np.linalg.norm(high - low))
-        # The surface lies in the control mesh's box; the butterfly's may leave it by a little.
-        low, high = low - 0.25 * (high - low), high + 0.25 * (high - low)
-        self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
         self._drift = 1.0
         self._view, self._limits = np.zeros(24), np.zeros(0)
 
@@ -185,7 +180,9 @@ class Rgb:
             net.vertices["until"][: net.counts[VERTICES]] = 0.0
         else:
             planes = (view[4:] - self._view[4:]).reshape(5, 4)
-            moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
+            # Answers are about points in this box, as it was when they were given.
+            corners = np.stack(np.meshgrid(*self._state.net.box.T), axis=-1).reshape(-1, 3)
+            moved = float(np.abs(corners @ planes[:, :3].T + planes[:, 3]).max())
             self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
         self._view, self._limits = view, limits
 

@@ -77,6 +77,8 @@ class RgbNet(NamedTuple):
         Edges being split, each for the one before.
     queue : (F,) int32
         A ring of faces whose edges have to be asked.
+    box : (2, 3) float64
+        Corners of the least box around all that was computed yet.
     counts : (16,) int64
     """
 
@@ -91,13 +93,14 @@ class RgbNet(NamedTuple):
     stack: NDArray[np.int64]
     chain: NDArray[np.int32]
     queue: NDArray[np.int32]
+    box: NDArray[np.float64]
     counts: NDArray[np.int64]
 
     @classmethod
     def empty(cls, faces: int, vertices: int, cage: Cage, /) -> "RgbNet":
         """Room for so many faces and vertices over a control mesh."""
         slots = 1 << (2 * vertices - 1).bit_length()
-        net = cls(
+        return cls(
             np.zeros(faces, FACE),
             np.zeros(vertices, VERTEX),
             np.full(vertices, -1, np.int8),
@@ -109,9 +112,9 @@ class RgbNet(NamedTuple):
             np.zeros(4096, np.int64),
             np.zeros((256, 2), np.int32),
             np.zeros(faces, np.int32),
+            np.stack([cage.positions.min(axis=0), cage.positions.max(axis=0)]),
             np.zeros(16, np.int64),
         )
-        return net
 
     def grown(self, faces: int, vertices: int, /) -> "RgbNet":
         """The same with more room; the queue begins at its array's beginning, the table is to be filled."""
