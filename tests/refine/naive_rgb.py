@@ -1,4 +1,4 @@
-"""RGB triangulations as sets: uniform subdivision level by level, in dictionaries, and what a set of splits shows.
+"""RGB triangulations as sets: uniform subdivision in dictionaries, and what a set of splits shows of it.
 
 A vertex is an int of the control mesh, or the frozenset of the two ends of the edge in whose middle it was
 born; so an edge and the vertex that splits it have one name.

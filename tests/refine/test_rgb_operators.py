@@ -1,4 +1,4 @@
-"""RGB operators: every step is a conforming mesh, and the one that the set of split edges means, in any order."""
+"""RGB operators: every step is a conforming mesh, the one that the set of split edges means."""
 
 import numpy as np
 import pytest

@@ -62,7 +62,7 @@ def set_meets(net, order, answers):
 
 @lean
 def candidates(net, pairs, ends, levels, middles):
-    """Write the edges that are there for themselves at the faces in the queue, until slots or places run out."""
+    """Write the edges there for themselves at the faces in the queue, until slots or places run out."""
     count = 0
     while net.counts[WAITING] > 0 and count + 3 <= len(pairs) and has_room(net):
         f = dequeue(net)
@@ -85,7 +85,7 @@ def candidates(net, pairs, ends, levels, middles):
 
 @lean
 def split_pairs(net, pairs, begin, view, limits):
-    """Split these edges from the begin-th on, if nothing has forced that yet; where it stopped for want of slots."""
+    """Split these edges from the begin-th on, unless something forced that; where slots ran out."""
     for i in range(begin, len(pairs)):
         h = find_edge(net, np.int64(pairs[i, 0]), np.int64(pairs[i, 1]))
         if h != NONE and not force(net, h // 3, h % 3, 0.0, view, limits, -1.0):

@@ -31,7 +31,7 @@ def base_vertices(net, positions, starts, ring, is_border):
         net.births[v], net.flags[v] = 0, BORN | LIMIT | PRESENT
         vertex.key = v + BASE_KEY
         net.shrinks[v] = 0.25
-        turn_cos, turn_sin = turn(n) if n > 1 else (1.0, 0.0)
+        turn_cos = turn(n)[0] if n > 1 else 1.0
         share = 0.375 + 0.25 * turn_cos
         if n > 0 and not is_border[v]:
             net.shrinks[v] = share * share

@@ -50,7 +50,7 @@ def valence(net, face, k):
 @lean
 def extraordinary(net, v, way):
     """(triangle, corner, valence) of the side's first end if it is extraordinary, else valence 6."""
-    face, e, c, x, y, s, step = side(net, v, way)
+    face, e, c, x, _, _, step = side(net, v, way)
     if face == NONE or c != 0 or x + step != SIDE:
         return np.int64(NONE), np.int64(0), 6
     k = np.int64((e + 1) % 3)
@@ -59,7 +59,7 @@ def extraordinary(net, v, way):
 
 @lean
 def part(net, v, way, i):
-    """On a side: its first end (0), apex (1), the wings beyond the first and second end's edge to it (2, 3)."""
+    """On a side: its first end (0), apex (1), the wings beyond the ends' edges to it (2, 3)."""
     face, e, c, x, y, s, step = side(net, v, way)
     step *= s
     if i == 0:
@@ -74,7 +74,7 @@ def part(net, v, way, i):
 @lean
 def along(net, v, is_first):
     """The border vertex before the first end, or after the second, of the border edge v splits."""
-    face, e, c, x, y, s, step = side(net, v, LEFT)
+    face, e, c, x, y, _, step = side(net, v, LEFT)
     x, y = (x + 3 * step, y - 3 * step) if is_first else (x - 3 * step, y + 3 * step)
     if x <= SIDE and y <= SIDE:
         return at(net, face, e, c, x, y)
@@ -101,7 +101,7 @@ def butterfly_needs(net, top, v):
         for is_first in (True, False):
             w = along(net, v, is_first)
             top = push_unknown(net, top, w, level)
-        face, e, c, x, y, s, step = side(net, v, LEFT)
+        face, e, c, x, y, _, step = side(net, v, LEFT)
         return push_unknown(net, top, at(net, face, e, c, x - step, y + step), level)
     top = push_unknown(net, top, part(net, v, RIGHT, 0), level)
     step = SIDE >> level
@@ -155,7 +155,7 @@ def butterfly_at(net, v, axis):
     """One coordinate of where v is born."""
     p = net.vertices[part(net, v, LEFT, 0)].born[axis]
     if side(net, v, RIGHT)[0] == NONE:
-        face, e, c, x, y, s, step = side(net, v, LEFT)
+        face, e, c, x, y, _, step = side(net, v, LEFT)
         q = net.vertices[at(net, face, e, c, x - step, y + step)].born[axis]
         before, after = (
             net.vertices[along(net, v, True)].born[axis],

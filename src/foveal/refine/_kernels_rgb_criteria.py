@@ -2,8 +2,8 @@
 """Whether an edge of uniform subdivision is to be split for a view: from what both its triangles share.
 
 `view` and `limits` are those of `_kernels_criteria.py`; level, frustum, facing, silhouette, edge length come
-in the same order. An edge knows the normals of its ends, each of the two triangles between which that vertex was
-born, and how far those spread; so it is on the silhouette if they face different ways, or would if the
+in the same order. An edge knows the normals of its ends, each that of the two triangles between which the end
+was born, and how far those spread; so it is on the silhouette if they face different ways, or would if the
 surface bent as much again.
 """
 
@@ -31,8 +31,8 @@ from ._kernels_rgb_points import ensure_at, position
 def has_wanted_parents(net, a, b, level):
     """Whether the edge a, b of a level is there for itself: all that it takes is wanted, or it takes nothing.
 
-    A half edge takes the split of the edge it is half of; an inner edge of both whose middles it joins. (Were one
-    enough, edges would be wanted that are not in the mesh yet, beside every end of a refined part.)
+    A half edge takes the split of the edge it is half of; an inner edge of both whose middles it joins. (Were
+    one enough, edges would be wanted that are not in the mesh yet, all along a refined part's end.)
     """
     if level == 0:
         return True
@@ -82,7 +82,7 @@ def wants_edge(net, a, b, level, view, limits):
     spread = spread_of(net, a, b, level)
     front, back = min(one, two) - spread * far, -max(one, two) - spread * far
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
-    # As the eye moves, a facing changes as quickly at most, and its distance times the spread that much quicker.
+    # A facing changes as quickly as the eye moves at most, its distance times the spread that much quicker.
     slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
     # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
     bend = max(1.0 - (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), 0.125 * spread * spread)

@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """The inverses of RGB splits: take a vertex out, one green triangle of its level's parent on each side.
 
-The faces at a vertex between its two edge halves, on one side, are (R, R), (G, B) or (B, G); R4-, R2GB-, GBGB-
-and G2B2-merge are the ways in which two sides meet. (G, B, R) and (R, B, G) become one of those when the
-diagonal is exchanged, (G, G, G) by a GG-swap that is merged at once.
+The faces at a vertex between its two edge halves, on one side, are (R, R), (G, B) or (B, G); R4-, R2GB-,
+GBGB- and G2B2-merge are the ways in which two sides meet. (G, B, R) and (R, B, G) become one of those when
+the diagonal is exchanged, (G, G, G) by a GG-swap that is merged at once.
 
 Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, section 4.3.
 """
@@ -89,7 +89,7 @@ def ready_side(net, v, a, b):
 
 @lean
 def merge_side(net, v, a, b, f):
-    """Make one face of the faces at v from b, in face f, to a; returns it, its edge from a to b to be linked."""
+    """Make one face of those at v from b, in face f, to a; returns it, its edge (a, b) to be linked."""
     g = next_around(net, f, v)
     if last_corner(net, g, v) != a:
         return merge_three(net, v, a, b, f, g, next_around(net, g, v))

@@ -110,7 +110,7 @@ def loop_born(net, v):
 @lean
 def loop_limit(net, v):
     """The limit of v: half itself, half its ring's mean; on a border four of itself to its two neighbours."""
-    a, b, c, d = diamond_of(net, v)
+    a, b, _, d = diamond_of(net, v)
     level = np.int64(net.births[v])
     x, y, z = position(net, a, level)
     bx, by, bz = position(net, b, level)

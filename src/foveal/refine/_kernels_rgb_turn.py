@@ -1,5 +1,5 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
-"""Cosine and sine of a turn's n-th part by sums and products alone, so that every machine gets the same bits."""
+"""Cosine and sine of a turn's n-th part by sums and products: every machine gets the same bits."""
 
 from ._kernels_rgb_layout import lean
 

@@ -1,13 +1,13 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
 
-An edge is wanted split if it meets the criteria and the splits that make it are wanted. It is needed split if it is
-wanted, or if it is a side of a triangle that a needed one's split takes: then it is the one that an end or
-apex, born on the needed edge's level, splits. Both read positions of uniform subdivision only, so the mesh
+An edge is wanted split if it meets the criteria and the splits that make it are wanted. It is needed split if
+it is wanted, or if a needed one's triangles take it: then an end or apex of that one was born on its level,
+and this is the edge which that vertex splits. Both read positions of uniform subdivision only, so the mesh
 depends on the view and not on the way to it.
 
-Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the beginning,
-and `until` says up to which drift an answer holds.
+Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
+beginning, and `until` says up to which drift an answer holds.
 """
 
 import math
@@ -161,7 +161,7 @@ def has_room(net):
 def review(net, order, begin, view, limits, drift):
     """Set WANTED anew for the vertices of `order`, by rising birth, from the begin-th on.
 
-    Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted the edges at it may be.
+    Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted, so may edges at it.
     """
     for i in range(begin, len(order)):
         if not has_room(net):

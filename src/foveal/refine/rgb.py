@@ -3,8 +3,8 @@
 Based on: E. Puppo. Selectively refinable subdivision meshes. Eurographics Symposium on Geometry Processing
 2006. Where ours is another way:
 
-* The mesh is a set of split edges of the infinite Loop hierarchy, closed under what splits require; the diagonal
-  of a triangle with two split edges ends at the lower address. As published it depends on the order of splits.
+* The mesh is a set of split edges of the infinite Loop hierarchy, closed under what splits require; the
+  diagonal of a triangle with two split edges ends at the lower address. As published it depends on the order.
 * Points are closed forms of where a vertex was born and of its limit, and what a stencil takes is computed by
   address, not split into the mesh for a time.
 * As the set is unique, Qr and Qc need no priorities: a queue holds the faces whose edges are to be asked, and
@@ -45,8 +45,8 @@ class Rgb:
     """An RGB triangulation that follows a camera, or any criteria for edges.
 
     An edge is split if it meets the criteria, or if a finer edge beside it needs it to be; a vertex stands
-    where uniform subdivision has it on the highest level among it and its neighbours. Nothing reads the mesh of
-    the moment, so the result is the same whatever was looked at before.
+    where uniform subdivision has it on the highest level among it and its neighbours. Nothing reads the mesh
+    of the moment, so the result is the same whatever was looked at before.
 
     Parameters
     ----------
@@ -108,11 +108,11 @@ class Rgb:
         criteria : Criteria or function, optional
             Limits in the view; or a function of `Edges`, such as `by_length(0.1)`.
         budget : int, optional
-            Triangles at most. If there would be more, all limits of edges in pixels (or 1, for a function's numbers)
-            are taken so many eighths of an octave larger as it takes; the control mesh is always whole.
+            Triangles at most. If there would be more, all limits of edges in pixels (or 1, for a function's
+            numbers) are taken so many eighths of an octave larger as it takes; the control mesh stays whole.
         most_splits : int, optional
             Stop after about so many, with a mesh that is whole but not yet as fine as wanted; for `Criteria`
-            without a budget. Further updates go on, and end in the very mesh that one without this limit makes.
+            without a budget. Further updates go on, and end in the mesh that one without this limit makes.
 
         Raises
         ------

@@ -62,7 +62,9 @@ def _answer_candidates(state: State, measure: Measure, scale: float) -> bool:
     if not update_kernels.has_room(state.net):
         state.grow()
     count = int(kernels.candidates(state.net, pairs, *edges))
-    is_split = _answers(measure, Edges(*(part[:count] for part in edges)), scale)
+    is_split = _answers(
+        measure, Edges(edges.ends[:count], edges.levels[:count], edges.middles[:count]), scale
+    )
     wanted, begin = pairs[:count][is_split], 0
     while (begin := int(kernels.split_pairs(state.net, wanted, begin, _VIEW, _LIMITS))) < len(wanted):
         state.grow()
@@ -84,6 +86,6 @@ def _answers(measure: Measure, edges: Edges, scale: float) -> NDArray[np.bool_]:
     if answers.dtype.kind == "b":
         if scale != 1.0:
             raise ValueError("a budget needs criteria that give numbers, to know which edges matter most")
-        return answers
+        return answers.astype(np.bool_)
     is_wanted: NDArray[np.bool_] = answers > scale
     return is_wanted

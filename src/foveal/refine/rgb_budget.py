@@ -1,7 +1,7 @@
 """The finest threshold with which an RGB triangulation keeps to its budget.
 
-Thresholds are steps of an eighth of an octave. The number of triangles falls from step to step, as all criteria
-are monotonous in it; so the least step that keeps to the budget is unique, wherever the search begins.
+Thresholds are steps of an eighth of an octave. The number of triangles falls from step to step, as all
+criteria are monotonous in it; so the least step that keeps to the budget is unique, wherever one begins.
 """
 
 from collections.abc import Callable

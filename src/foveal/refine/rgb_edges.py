@@ -27,8 +27,8 @@ class Edges(NamedTuple):
 
 
 Measure = Callable[[Edges], NDArray[Any]]
-"""(n,) numbers, an edge being split where it is above 1, or (n,) bool. It may ask nothing but the edges: then the
-mesh depends on nothing else either."""
+"""(n,) numbers, an edge being split where it is above 1, or (n,) bool. If it asks nothing but the edges, the
+mesh depends on nothing else."""
 
 
 def by_length(length: float, /) -> Measure:

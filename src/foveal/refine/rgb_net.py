@@ -29,8 +29,8 @@ FACE = np.dtype(
 
 #: A vertex, in the mesh or only computed: its address, where it was born, its limit, the normal and spread of
 #: the triangles it was born between, the ends and apexes of the edge it splits, one of its faces, up to which
-#: drift it is known whether that edge meets the criteria, and when it was last used. Of a free slot `diamond[0]`
-#: is the next one.
+#: drift it is known whether that edge meets the criteria, and when it was last used. Of a free slot
+#: `diamond[0]` is the next one.
 VERTEX = np.dtype(
     [
         ("born", np.float64, 3),
