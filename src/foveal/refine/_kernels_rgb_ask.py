@@ -67,10 +67,12 @@ def candidates(net, pairs, ends, levels, middles):
     while net.counts[WAITING] > 0 and count + 3 <= len(pairs) and has_room(net):
         f = dequeue(net)
         face = net.faces[f]
-        if face.code == FREE_CODE or face.until == math.inf:
+        if face.code == FREE_CODE:
             continue
-        face.until = math.inf
         for k in range(3):
+            if face.until[k] == math.inf:
+                continue
+            face.until[k] = math.inf
             level = edge_level(face.code, k)
             if level == NONE or level >= LEVELS or not is_asked_at(face, k):
                 continue

@@ -124,9 +124,16 @@ def put(net, f, a, b, c, x, y, z, code):
     face.corners[0], face.corners[1], face.corners[2] = a, b, c
     face.beside[0], face.beside[1], face.beside[2] = x, y, z
     face.code = code
-    face.until = 0.0
+    face.until[0] = face.until[1] = face.until[2] = 0.0
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f
     enqueue(net, f)
+
+
+@lean
+def know(net, f, k, until, j, other):
+    """What was known of two edges before they came to be edges k and j of face f."""
+    face = net.faces[f]
+    face.until[k], face.until[j] = until, other
 
 
 @lean
@@ -167,7 +174,7 @@ def ask_around(net, v):
     while f != NONE:
         enqueue(net, f)
         face = net.faces[f]
-        face.until = 0.0
+        face.until[0] = face.until[1] = face.until[2] = 0.0
         f = np.int64(face.beside[(corner_at(face, v) + 2) % 3])
         if f == first:
             return
@@ -175,5 +182,5 @@ def ask_around(net, v):
     while f != NONE:
         enqueue(net, f)
         face = net.faces[f]
-        face.until = 0.0
+        face.until[0] = face.until[1] = face.until[2] = 0.0
         f = np.int64(face.beside[corner_at(face, v)])

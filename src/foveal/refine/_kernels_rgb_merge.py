@@ -20,6 +20,7 @@ from ._kernels_rgb_layout import (
     corner_at,
     find_edge,
     give_face,
+    know,
     lean,
     level_of,
     painted,
@@ -97,13 +98,17 @@ def merge_side(net, v, a, b, f):
     i, j = corner_at(one, v), corner_at(two, v)
     c = one.corners[(i + 2) % 3]
     bc, ca = one.beside[(i + 1) % 3], two.beside[(j + 1) % 3]
+    of_bc, of_ca = one.until[(i + 1) % 3], two.until[(j + 1) % 3]
     level = level_of(two.code if colour(one.code) == GREEN else one.code)
     if colour(one.code) == GREEN:  # G, B: the short edge follows b
         put(net, f, c, a, b, ca, NONE, bc, painted(RED_LONG, level))
+        net.faces[f].until[2] = of_bc
     elif colour(one.code) == BLUE:  # B, G
         put(net, f, b, c, a, bc, ca, NONE, painted(RED_SHORT, level))
+        net.faces[f].until[1] = of_ca
     else:
         put(net, f, a, b, c, NONE, bc, ca, painted(GREEN, level))
+        know(net, f, 1, of_bc, 2, of_ca)
     relink(net, ca, a, f)
     give_face(net, g)
     return f
@@ -116,14 +121,19 @@ def merge_three(net, v, a, b, f, g, h):
     i, j, k = corner_at(one, v), corner_at(two, v), corner_at(three, v)
     x, y = one.corners[(i + 2) % 3], two.corners[(j + 2) % 3]
     bx, xy, ya = one.beside[(i + 1) % 3], two.beside[(j + 1) % 3], three.beside[(k + 1) % 3]
+    of_bx, of_xy, of_ya = one.until[(i + 1) % 3], two.until[(j + 1) % 3], three.until[(k + 1) % 3]
     level = level_of(one.code) - 1
     if net.vertices[a].key < net.vertices[b].key:
         put(net, f, x, a, b, g, NONE, bx, painted(RED_LONG, level))
         put(net, g, a, x, y, f, xy, ya, painted(BLUE, level))
+        net.faces[f].until[2] = of_bx
+        know(net, g, 1, of_xy, 2, of_ya)
         relink(net, ya, a, g)
     else:
         put(net, f, b, y, a, g, ya, NONE, painted(RED_SHORT, level))
         put(net, g, y, b, x, f, bx, xy, painted(BLUE, level))
+        net.faces[f].until[1] = of_ya
+        know(net, g, 1, of_bx, 2, of_xy)
         relink(net, bx, x, g)
         relink(net, ya, a, f)
     give_face(net, h)

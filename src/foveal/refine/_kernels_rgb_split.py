@@ -19,6 +19,7 @@ from ._kernels_rgb_layout import (
     RED_SHORT,
     colour,
     corner_at,
+    know,
     lean,
     level_of,
     painted,
@@ -47,21 +48,25 @@ def bisect(net, f, k, v):
     face = net.faces[f]
     a, b, c = face.corners[k], face.corners[(k + 1) % 3], face.corners[(k + 2) % 3]
     bc, ca = face.beside[(k + 1) % 3], face.beside[(k + 2) % 3]
+    of_bc, of_ca = face.until[(k + 1) % 3], face.until[(k + 2) % 3]
     shade, level = colour(face.code), level_of(face.code)
     g = take_face(net)
     net.faces[g].base = face.base
     if shade == GREEN:
         put(net, f, v, c, a, g, ca, NONE, painted(RED_LONG, level))
         put(net, g, c, v, b, f, NONE, bc, painted(RED_SHORT, level))
+        net.faces[f].until[1], net.faces[g].until[2] = of_ca, of_bc
         relink(net, bc, c, g)
         return f, g
     if shade == RED_SHORT:  # the edge's first end has the green corner
         put(net, f, b, c, v, bc, g, NONE, painted(BLUE, level))
         put(net, g, c, a, v, ca, NONE, f, painted(GREEN, level + 1))
+        net.faces[g].until[0] = of_ca
         relink(net, ca, a, g)
         return g, f
     put(net, f, c, a, v, ca, NONE, g, painted(BLUE, level))
     put(net, g, b, c, v, bc, f, NONE, painted(GREEN, level + 1))
+    net.faces[g].until[0] = of_bc
     relink(net, bc, c, g)
     return f, g
 
@@ -79,9 +84,12 @@ def swap(net, f, n):
     one, two = net.faces[f], net.faces[n]
     a, b, c, d = one.corners[0], one.corners[1], one.corners[2], two.corners[2]
     bc, ca, ad, db = one.beside[1], one.beside[2], two.beside[1], two.beside[2]
+    of_bc, of_ca, of_ad, of_db = one.until[1], one.until[2], two.until[1], two.until[2]
     code = painted(GREEN, level_of(one.code) + 1)
     put(net, f, b, c, d, bc, n, db, code)
     put(net, n, c, a, d, ca, ad, f, code)
+    know(net, f, 0, of_bc, 2, of_db)
+    know(net, n, 0, of_ca, 1, of_ad)
     relink(net, db, b, f)
     relink(net, ca, a, n)
 
@@ -92,15 +100,20 @@ def exchange(net, f, n):
     one, two = net.faces[f], net.faces[n]
     a, b, c, d = one.corners[0], one.corners[1], one.corners[2], two.corners[2]
     bc, ca, ad, db = one.beside[1], one.beside[2], two.beside[1], two.beside[2]
+    of_bc, of_ca, of_ad, of_db = one.until[1], one.until[2], two.until[1], two.until[2]
     level = level_of(one.code)
     if colour(two.code) == RED_LONG:  # its long edge goes from a to d
         put(net, n, d, c, a, f, ca, ad, painted(RED_SHORT, level))
         put(net, f, c, d, b, n, db, bc, one.code)
+        know(net, n, 1, of_ca, 2, of_ad)
+        know(net, f, 1, of_db, 2, of_bc)
         relink(net, ca, a, n)
         relink(net, db, b, f)
     else:  # from d to b
         put(net, n, c, d, b, f, db, bc, painted(RED_LONG, level))
         put(net, f, d, c, a, n, ca, ad, one.code)
+        know(net, n, 1, of_db, 2, of_bc)
+        know(net, f, 1, of_ca, 2, of_ad)
         relink(net, bc, c, n)
         relink(net, ad, d, f)
 

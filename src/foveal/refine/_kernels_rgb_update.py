@@ -218,9 +218,10 @@ def coarsen(net, order):
 
 @lean
 def enqueue_expired(net, drift):
-    """Put the faces whose answers no longer hold into the queue."""
+    """Put the faces into the queue of which an edge's answer no longer holds."""
     for f in range(net.counts[FACES]):
-        if net.faces[f].code != FREE_CODE and net.faces[f].until <= drift:
+        face = net.faces[f]
+        if min(face.until[0], min(face.until[1], face.until[2])) <= drift and face.code != FREE_CODE:
             enqueue(net, f)
 
 
@@ -244,24 +245,26 @@ def refine(net, view, limits, drift, most_splits, most_faces):
             return ENOUGH
         f = dequeue(net)
         face = net.faces[f]
-        if face.code == FREE_CODE or face.until > drift:
+        if face.code == FREE_CODE:
             continue
-        until = math.inf
         for k in range(3):
+            if face.until[k] > drift:
+                continue
+            # So it stays for red edges, for those asked from the other side, and for those whose makers are not
+            # wanted: should that change, it becomes 0.
+            face.until[k] = math.inf
             level = edge_level(face.code, k)
             if level == NONE or not is_asked_at(face, k):
                 continue
             a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
             if not has_wanted_parents(net, a, b, level):
-                continue  # should a parent become wanted, this will be asked again
+                continue
             meets, slack = wants_edge(net, a, b, level, view, limits)
             if meets:
-                until = -1.0
+                face.until[k] = 0.0
                 if not force(net, f, k, drift + slack, view, limits, drift):
                     enqueue(net, f)
                     return NO_ROOM
                 break  # the face is another now, and in the queue
-            until = min(until, drift + slack)
-        if until > 0.0:
-            face.until = until
+            face.until[k] = drift + slack
     return DONE

@@ -13,13 +13,14 @@ from .cage import Cage
 __all__ = ["FACE", "MAX_BASE", "VERTEX", "RgbNet", "check_base"]
 
 #: A face. `beside[k]` is the face beyond the edge from corner k to k + 1, `base` the control mesh's triangle
-#: it lies in, `code` its colour and level, `until` the drift of the view up to which none of its edges is
-#: wanted split. Of a free slot `beside[0]` is the next one.
+#: it lies in, `code` its colour and level, `until[k]` the drift of the view up to which edge k is known not
+#: to be wanted split, or infinity for an edge that this face need not ask. Of a free slot `beside[0]` is the
+#: next one.
 FACE = np.dtype(
     [
         ("corners", np.int32, 3),
         ("beside", np.int32, 3),
-        ("until", np.float64),
+        ("until", np.float64, 3),
         ("base", np.int32),
         ("code", np.uint8),
         ("is_queued", np.bool_),
