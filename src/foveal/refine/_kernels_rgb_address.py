@@ -19,6 +19,7 @@ from ._kernels_rgb_layout import (
     IN_USE,
     NONE,
     VERTICES,
+    corner_at,
     lean,
 )
 
@@ -117,6 +118,7 @@ def slot_of(net, key):
     vertex.key = key
     vertex.stamp = counts[CLOCK]
     vertex.around = NONE
+    vertex.shrink = 0.25
     net.births[v] = level_at(key)
     net.flags[v] = 0
     enter(net, key, v)
@@ -145,7 +147,7 @@ def beyond(net, face, w, z):
 
     The two triangles are unfolded; triangle NONE where there is nothing beyond.
     """
-    mate = np.int64(net.mates[face, (z + 1) % 3])
+    mate = np.int64(net.base[face].mates[(z + 1) % 3])
     if mate == NONE:
         return np.int64(NONE), w
     x, y, t = weight(w, (z + 1) % 3), weight(w, (z + 2) % 3), weight(w, z)
@@ -163,7 +165,7 @@ def address(net, face, w):
             break
     for z in range(3):
         if weight(w, z) == SIDE:
-            return np.int64(net.cage[face, z]) + BASE_KEY
+            return np.int64(net.base[face].corners[z]) + BASE_KEY
     for z in range(3):
         if weight(w, z) == 0:
             other, v = beyond(net, face, w, z)
@@ -185,7 +187,7 @@ def weights_in(net, v, face):
     """The weights of a vertex in a triangle that it lies in."""
     key = net.vertices[v].key
     if key < 0:
-        k = 0 if net.cage[face, 0] == v else (1 if net.cage[face, 1] == v else 2)
+        k = corner_at(net.base[face], v)
         return placed(k, np.int64(SIDE), np.int64(0), np.int64(0))
     at, w = place(key)
     if at != face:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ._kernels_rgb_address import BASE_KEY, enter
 from ._kernels_rgb_layout import (
+    BASE_COUNT,
     BORN,
     BUTTERFLY,
     FREE,
@@ -30,12 +31,12 @@ def base_vertices(net, positions, starts, ring, is_border):
         n = end - begin
         net.births[v], net.flags[v] = 0, BORN | LIMIT | PRESENT
         vertex.key = v + BASE_KEY
-        net.shrinks[v] = 0.25
+        vertex.shrink = 0.25
         turn_cos = turn(n)[0] if n > 1 else 1.0
         share = 0.375 + 0.25 * turn_cos
         if n > 0 and not is_border[v]:
-            net.shrinks[v] = share * share
-        alpha = 0.625 - net.shrinks[v]
+            vertex.shrink = share * share
+        alpha = 0.625 - vertex.shrink
         for axis in range(3):
             p = positions[v, axis]
             vertex.born[axis] = vertex.limit[axis] = p
@@ -55,22 +56,22 @@ def base_vertices(net, positions, starts, ring, is_border):
 @lean
 def base_normals(net):
     """The mean of each vertex's triangles' normals, by area, and how far those are from it."""
-    for f in range(len(net.cage)):
+    for f in range(len(net.base)):
         x, y, z = area(net, f)
         for k in range(3):
-            normal = net.vertices[net.cage[f, k]].normal
+            normal = net.vertices[net.base[f].corners[k]].normal
             normal[0] += x
             normal[1] += y
             normal[2] += z
-    for v in range(len(net.shrinks)):
+    for v in range(net.counts[BASE_COUNT]):
         vertex = net.vertices[v]
         x, y, z = unit(vertex.normal[0], vertex.normal[1], vertex.normal[2])
         vertex.normal[0], vertex.normal[1], vertex.normal[2] = x, y, z
-    for f in range(len(net.cage)):
+    for f in range(len(net.base)):
         x, y, z = area(net, f)
         x, y, z = unit(x, y, z)
         for k in range(3):
-            vertex = net.vertices[net.cage[f, k]]
+            vertex = net.vertices[net.base[f].corners[k]]
             n = vertex.normal
             vertex.spread = max(vertex.spread, math.sqrt(away(x, y, z, n[0], n[1], n[2])))
 
@@ -79,9 +80,9 @@ def base_normals(net):
 def area(net, f):
     """Twice the area vector of a triangle of the control mesh."""
     a, b, c = (
-        net.vertices[net.cage[f, 0]].born,
-        net.vertices[net.cage[f, 1]].born,
-        net.vertices[net.cage[f, 2]].born,
+        net.vertices[net.base[f].corners[0]].born,
+        net.vertices[net.base[f].corners[1]].born,
+        net.vertices[net.base[f].corners[2]].born,
     )
     return cross(b[0] - a[0], b[1] - a[1], b[2] - a[2], c[0] - a[0], c[1] - a[1], c[2] - a[2])
 
@@ -89,6 +90,6 @@ def area(net, f):
 @lean
 def fill_table(net):
     """Enter all vertices but the control mesh's into an empty table."""
-    for v in range(len(net.shrinks), net.counts[VERTICES]):
+    for v in range(net.counts[BASE_COUNT], net.counts[VERTICES]):
         if net.births[v] != FREE:
             enter(net, net.vertices[v].key, np.int64(v))

@@ -31,7 +31,7 @@ def spoke(net, face, k, distance):
 @lean
 def turned(net, face, k):
     """(triangle, corner): the next one counter-clockwise around corner k; NONE beyond the border."""
-    mate = np.int64(net.mates[face, (k + 2) % 3])
+    mate = np.int64(net.base[face].mates[(k + 2) % 3])
     return (np.int64(NONE), np.int64(0)) if mate == NONE else (mate // 3, mate % 3)
 
 
@@ -86,8 +86,8 @@ def along(net, v, is_first):
             f, k = turned(net, f, k)
         return at(net, last, corner, SIDE - 2 * step, np.int64(0), 2 * step)
     f, k = face, np.int64((e + 2) % 3)
-    while net.mates[f, k] != NONE:
-        mate = np.int64(net.mates[f, k])
+    while net.base[f].mates[k] != NONE:
+        mate = np.int64(net.base[f].mates[k])
         f, k = mate // 3, (mate % 3 + 1) % 3
     return spoke(net, f, k, 2 * step)
 
@@ -120,7 +120,7 @@ def butterfly_needs(net, top, v):
 @lean
 def ring_sum(net, face, k, n, step, axis):
     """The scheme's sum around an extraordinary end."""
-    total = 0.75 * net.vertices[net.cage[face, k]].born[axis]
+    total = 0.75 * net.vertices[net.base[face].corners[k]].born[axis]
     turn_cos, turn_sin = turn(n)
     c, s = 1.0, 0.0
     for j in range(n):

@@ -1,7 +1,7 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """What is known of a vertex, and the list of what has to be known first."""
 
-from ._kernels_rgb_layout import BORN, LIMIT, lean
+from ._kernels_rgb_layout import BORN, LIMIT, STACK, lean
 
 #: What is asked of a vertex: where it was born, its limit.
 ASK_BORN, ASK_LIMIT = 0, 1
@@ -17,7 +17,7 @@ def is_known(net, v, level):
 @lean
 def push(net, top, v, ask):
     """Ask something of a vertex before what is on the stack; returns the new top."""
-    net.stack[top] = 2 * v + ask
+    net.counts[STACK + top] = 2 * v + ask
     return top + 1
 
 
@@ -34,7 +34,4 @@ def set_born(net, v, x, y, z):
     """Where a vertex was born."""
     vertex = net.vertices[v]
     vertex.born[0], vertex.born[1], vertex.born[2] = x, y, z
-    for axis in range(3):  # Loop's surface stays in the control mesh's box, the butterfly's does not
-        net.box[0, axis] = min(net.box[0, axis], vertex.born[axis])
-        net.box[1, axis] = max(net.box[1, axis], vertex.born[axis])
     net.flags[v] |= BORN

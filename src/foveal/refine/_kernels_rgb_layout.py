@@ -27,9 +27,13 @@ FREE_CODE, FREE = 255, -1
 #: was born is known; its limit is known; it is in the mesh.
 WANTED, NEEDED, MEETS, BORN, LIMIT, PRESENT = 1, 2, 4, 8, 16, 32
 
-#: Places in `counts`: slots ever used, the first free ones, the queue, what there is, and the clock of use.
+#: Places in `counts`: slots ever used, the first free ones, the queue, what there is, the clock of use.
 FACES, VERTICES, FREE_FACE, FREE_VERTEX, FIRST, WAITING = 0, 1, 2, 3, 4, 5
 FACES_IN_USE, PRESENT_COUNT, SPLITS, MERGES, CLOCK, SCHEME, IN_USE = 6, 7, 8, 9, 10, 11, 12
+LAST, BASE_COUNT = 13, 14
+
+#: Behind them: what is being computed for something else, and pairs of ends of edges being split for others.
+STACK, CHAIN, WORDS = 16, 16 + 4096, 16 + 4096 + 512
 
 LOOP, BUTTERFLY = 0, 1
 
@@ -101,8 +105,11 @@ def enqueue(net, f):
     face, counts = net.faces[f], net.counts
     if not face.is_queued:
         face.is_queued = True
-        i = counts[FIRST] + counts[WAITING]
-        net.queue[i if i < len(net.queue) else i - len(net.queue)] = f
+        if counts[WAITING] == 0:
+            counts[FIRST] = f
+        else:
+            net.faces[counts[LAST]].next = f
+        counts[LAST] = f
         counts[WAITING] += 1
 
 
@@ -110,8 +117,8 @@ def enqueue(net, f):
 def dequeue(net):
     """The first face of the queue."""
     counts = net.counts
-    f = np.int64(net.queue[counts[FIRST]])
-    counts[FIRST] = counts[FIRST] + 1 if counts[FIRST] + 1 < len(net.queue) else 0
+    f = counts[FIRST]
+    counts[FIRST] = net.faces[f].next
     counts[WAITING] -= 1
     net.faces[f].is_queued = False
     return f

@@ -19,7 +19,7 @@ import numpy as np
 from ._kernels_rgb_address import LEFT, RIGHT, at, side
 from ._kernels_rgb_butterfly import butterfly_born, butterfly_needs
 from ._kernels_rgb_known import ASK_BORN, ASK_LIMIT, is_known, push, push_unknown, set_born
-from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, PRESENT, SCHEME, lean
+from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, PRESENT, SCHEME, STACK, lean
 
 SIXTH = 1.0 / 6.0
 
@@ -32,10 +32,9 @@ def position(net, v, level):
     steps = level - net.births[v]
     if steps == 0:
         return x, y, z
-    shrink = net.shrinks[v] if v < len(net.shrinks) else 0.25
     share = 1.0
     for _ in range(steps):
-        share *= shrink
+        share *= vertex.shrink
     lx, ly, lz = vertex.limit[0], vertex.limit[1], vertex.limit[2]
     return lx + share * (x - lx), ly + share * (y - ly), lz + share * (z - lz)
 
@@ -157,7 +156,7 @@ def ensure(net, v, ask):
     is_butterfly = net.counts[SCHEME] == BUTTERFLY
     top = push(net, 0, v, ask)
     while top > 0:
-        task = net.stack[top - 1]
+        task = net.counts[STACK + top - 1]
         w, what = task >> 1, task & 1
         if net.flags[w] & (LIMIT if what == ASK_LIMIT else BORN):
             top -= 1

@@ -18,8 +18,10 @@ from ._kernels_rgb_address import middle_key, slot_of
 from ._kernels_rgb_criteria import has_wanted_parents, wants_edge
 from ._kernels_rgb_known import ASK_BORN
 from ._kernels_rgb_layout import (
+    BASE_COUNT,
     BLUE,
     BORN,
+    CHAIN,
     FACES,
     FACES_IN_USE,
     FREE_CODE,
@@ -102,13 +104,13 @@ def force(net, f, k, until, view, limits, drift):
 
     That edge itself is known to be wanted up to a drift of `until`, or not known to be if that is 0.
     """
-    chain = net.chain
-    chain[0, 0], chain[0, 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
+    chain = net.counts
+    chain[CHAIN], chain[CHAIN + 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
     depth = 1
     while depth > 0:
         if not has_room(net):
             return False
-        h = find_edge(net, np.int64(chain[depth - 1, 0]), np.int64(chain[depth - 1, 1]))
+        h = find_edge(net, chain[CHAIN + 2 * depth - 2], chain[CHAIN + 2 * depth - 1])
         if h == NONE:
             depth -= 1
             continue
@@ -119,7 +121,8 @@ def force(net, f, k, until, view, limits, drift):
             o = obstacle(net, n, corner_at(net.faces[n], net.faces[g].corners[(i + 1) % 3]))
         if o != NONE:
             face, j = net.faces[o // 3], o % 3
-            chain[depth, 0], chain[depth, 1] = face.corners[j], face.corners[(j + 1) % 3]
+            chain[CHAIN + 2 * depth] = face.corners[j]
+            chain[CHAIN + 2 * depth + 1] = face.corners[(j + 1) % 3]
             depth += 1
             continue
         v = split_edge(net, g, i)
@@ -194,7 +197,7 @@ def mark_needed(net, order):
 def sort_by_birth(net, starts, order):
     """order: the vertices in the mesh born after level 0, by birth; returns how many."""
     starts[:] = 0
-    first, count = len(net.shrinks), net.counts[VERTICES]
+    first, count = net.counts[BASE_COUNT], net.counts[VERTICES]
     for v in range(first, count):
         if net.flags[v] & PRESENT:
             starts[net.births[v] + 1] += 1
@@ -250,8 +253,8 @@ def refine(net, view, limits, drift, most_splits, most_faces):
         for k in range(3):
             if face.until[k] > drift:
                 continue
-            # So it stays for red edges, for those asked from the other side, and for those whose makers are not
-            # wanted: should that change, it becomes 0.
+            # So it stays for red edges, for those asked from the other side, and for those whose makers are
+            # not wanted: should that change, it becomes 0.
             face.until[k] = math.inf
             level = edge_level(face.code, k)
             if level == NONE or not is_asked_at(face, k):

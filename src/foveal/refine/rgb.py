@@ -181,8 +181,7 @@ class Rgb:
         else:
             planes = (view[4:] - self._view[4:]).reshape(5, 4)
             # Answers are about points in this box, as it was when they were given.
-            corners = np.stack(np.meshgrid(*self._state.net.box.T), axis=-1).reshape(-1, 3)
-            moved = float(np.abs(corners @ planes[:, :3].T + planes[:, 3]).max())
+            moved = float(np.abs(self._state.box() @ planes[:, :3].T + planes[:, 3]).max())
             self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
         self._view, self._limits = view, limits
 
@@ -216,12 +215,11 @@ class Rgb:
     def bytes_used(self) -> int:
         """What the arrays take for the slots in use, all told."""
         net = self._state.net
-        a_face = net.faces.itemsize + net.queue.itemsize
         a_vertex = net.vertices.itemsize + net.births.itemsize + net.flags.itemsize
         return (
-            int(net.counts[FACES]) * a_face
+            int(net.counts[FACES]) * net.faces.itemsize
             + int(net.counts[VERTICES]) * a_vertex
-            + sum(a.nbytes for a in (net.table, net.cage, net.mates, net.shrinks))
+            + sum(a.nbytes for a in (net.table, net.base, net.counts))
         )
 
 

@@ -8,6 +8,9 @@ from . import _kernels_rgb_show as show_kernels
 from . import _kernels_rgb_update as kernels
 from ._kernels_rgb_address import LEVELS
 from ._kernels_rgb_layout import (
+    BASE_COUNT,
+    BORN,
+    BUTTERFLY,
     CLOCK,
     FACES,
     FACES_IN_USE,
@@ -37,7 +40,7 @@ class State:
         net.counts[[FACES, FACES_IN_USE]] = faces
         net.counts[[VERTICES, IN_USE, PRESENT_COUNT]] = count
         net.counts[[FREE_FACE, FREE_VERTEX]] = -1
-        net.counts[SCHEME] = scheme
+        net.counts[SCHEME], net.counts[BASE_COUNT] = scheme, count
         net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
         net.faces["base"][:faces] = np.arange(faces)
         net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
@@ -48,6 +51,15 @@ class State:
         """Twice the room."""
         self.net = self.net.grown(2 * len(self.net.faces), 2 * len(self.net.vertices))
         base_kernels.fill_table(self.net)
+
+    def box(self) -> NDArray[np.float64]:
+        """(8, 3): the corners of a box around all that was computed yet."""
+        # Loop's surface stays in the control mesh's box, the butterfly's does not.
+        is_loop = self.net.counts[SCHEME] != BUTTERFLY
+        count = int(self.net.counts[BASE_COUNT if is_loop else VERTICES])
+        points = self.net.vertices["born"][:count][self.net.flags[:count] & BORN != 0]
+        sides = np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+        return np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
 
     @property
     def faces(self) -> int:
