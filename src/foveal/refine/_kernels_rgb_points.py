@@ -7,7 +7,7 @@ those born with it around it; those that are not in the mesh are computed into t
 inserted. All sums are symmetric in what is to the left and the right, so they are the same to the last bit
 whatever the order of operations.
 
-As published, a stencil's vertices are split into the mesh for a time. See `rgb.py` for what that would cost.
+As published, a stencil's vertices are split into the mesh for a time; `rgb.py` says what that would cost.
 
 Based on: C. Loop. Smooth subdivision surfaces based on triangles. 1987, with its masks (not 3/(8n)).
 """
