@@ -1,0 +1,94 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Whether an edge of uniform subdivision is to be split for a view: from what both its triangles share.
+
+`view` and `limits` are those of `_kernels_criteria.py`; level, frustum, facing, silhouette, edge length come
+in the same order. An edge knows the normals of its ends, each that of the two triangles between which the end
+was born, and how far those spread; so it is on the silhouette if they face different ways, or would if the
+surface bent as much again.
+"""
+
+import math
+
+from ._kernels_criteria import (
+    BACK,
+    BALL,
+    BEND,
+    EDGE,
+    EYE,
+    FRONT,
+    ITERATIONS,
+    PIXELS,
+    PLANES,
+    SILHOUETTE,
+    trusted,
+)
+from ._kernels_rgb_address import LEVELS
+from ._kernels_rgb_layout import WANTED, lean
+from ._kernels_rgb_points import ensure_at, position
+
+
+@lean
+def has_wanted_parents(net, a, b, level):
+    """Whether the edge a, b of a level is there for itself: all that it takes is wanted, or it takes nothing.
+
+    A half edge takes the split of the edge it is half of; an inner edge of both whose middles it joins. (Were
+    one enough, edges would be wanted that are not in the mesh yet, all along a refined part's end.)
+    """
+    if level == 0:
+        return True
+    return (net.births[a] != level or (net.flags[a] & WANTED) != 0) and (
+        net.births[b] != level or (net.flags[b] & WANTED) != 0
+    )
+
+
+@lean
+def spread_of(net, a, b, level):
+    """How much normals vary about an edge and as much again: of what its newest ends were born between."""
+    spread = 0.0
+    if net.births[a] == level:
+        spread = max(spread, net.vertices[a].spread)
+    if net.births[b] == level:
+        spread = max(spread, net.vertices[b].spread)
+    return spread
+
+
+@lean
+def wants_edge(net, a, b, level, view, limits):
+    """(is wanted, slack) of the edge a, b of a level, whatever its parents are.
+
+    The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
+    of the frustum has moved by `slack`.
+    """
+    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
+    if level >= min(most, LEVELS):
+        return False, math.inf
+    ensure_at(net, a, level)
+    ensure_at(net, b, level)
+    ax, ay, az = position(net, a, level)
+    bx, by, bz = position(net, b, level)
+    x, y, z = 0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz)
+    ux, uy, uz = bx - ax, by - ay, bz - az
+    length = math.sqrt(ux * ux + uy * uy + uz * uz)
+    dx, dy, dz = view[EYE] - x, view[EYE + 1] - y, view[EYE + 2] - z
+    far = math.sqrt(dx * dx + dy * dy + dz * dz)
+    slack = math.inf
+    for i in range(PLANES, PLANES + 20, 4):
+        inside = view[i] * x + view[i + 1] * y + view[i + 2] * z + view[i + 3] + BALL * length
+        if inside < 0.0:
+            return False, trusted(-inside, far)
+        slack = min(slack, inside)
+    n, m = net.vertices[a].normal, net.vertices[b].normal
+    one, two = n[0] * dx + n[1] * dy + n[2] * dz, m[0] * dx + m[1] * dy + m[2] * dz
+    spread = spread_of(net, a, b, level)
+    front, back = min(one, two) - spread * far, -max(one, two) - spread * far
+    kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
+    # A facing changes as quickly as the eye moves at most, its distance times the spread that much quicker.
+    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
+    # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
+    bend = max(1.0 - (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), 0.125 * spread * spread)
+    if level >= limits[kind, ITERATIONS] or bend < limits[kind, BEND]:
+        return False, trusted(slack, far)
+    if limits[kind, EDGE] > 0.0:
+        reach = view[PIXELS] * length / limits[kind, EDGE]
+        return reach > far, trusted(min(slack, abs(reach - far)), far)
+    return True, trusted(slack, far)

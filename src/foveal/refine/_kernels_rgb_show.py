@@ -1,0 +1,66 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""What is drawn of an RGB triangulation, and what is forgotten of it."""
+
+import numpy as np
+
+from ._kernels_rgb_address import remove
+from ._kernels_rgb_known import ASK_LIMIT
+from ._kernels_rgb_layout import (
+    FACES,
+    FREE,
+    FREE_CODE,
+    FREE_VERTEX,
+    IN_USE,
+    LIMIT,
+    PRESENT,
+    VERTICES,
+    lean,
+)
+from ._kernels_rgb_points import ensure, ensure_at, position
+from ._kernels_rgb_update import has_room
+
+
+@lean
+def shown_levels(net, levels):
+    """levels[v]: the highest level among a vertex and its neighbours in the mesh, on which it stands."""
+    for v in range(net.counts[VERTICES]):
+        levels[v] = net.births[v] if net.flags[v] & PRESENT else FREE
+    for f in range(net.counts[FACES]):
+        face = net.faces[f]
+        if face.code != FREE_CODE:
+            a, b, c = face.corners[0], face.corners[1], face.corners[2]
+            level = max(net.births[a], max(net.births[b], net.births[c]))
+            levels[a] = max(levels[a], level)
+            levels[b] = max(levels[b], level)
+            levels[c] = max(levels[c], level)
+
+
+@lean
+def place_all(net, levels, begin, is_limit, out):
+    """out[v]: where the vertices of the mesh stand, from `begin` on; where it stopped for want of slots."""
+    for i in range(begin, len(levels)):
+        if levels[i] == FREE:
+            continue
+        if not has_room(net):
+            return i
+        v = np.int64(i)
+        if is_limit:
+            if net.flags[v] & LIMIT == 0:
+                ensure(net, v, ASK_LIMIT)
+            limit = net.vertices[v].limit
+            out[v, 0], out[v, 1], out[v, 2] = limit[0], limit[1], limit[2]
+        else:
+            ensure_at(net, v, np.int64(levels[v]))
+            out[v, 0], out[v, 1], out[v, 2] = position(net, v, np.int64(levels[v]))
+    return len(levels)
+
+
+@lean
+def forget(net, slots):
+    """Free the slots of vertices that are not in the mesh."""
+    for v in slots:
+        remove(net, net.vertices[v].key)
+        net.births[v], net.flags[v] = FREE, 0
+        net.vertices[v].diamond[0] = net.counts[FREE_VERTEX]
+        net.counts[FREE_VERTEX] = v
+        net.counts[IN_USE] -= 1

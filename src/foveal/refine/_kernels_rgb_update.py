@@ -1,0 +1,273 @@
+# mypy: allow-untyped-defs, allow-untyped-calls
+"""Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
+
+An edge is wanted split if it meets the criteria and the splits that make it are wanted. It is needed split if
+it is wanted, or if a needed one's triangles take it: then an end or apex of that one was born on its level,
+and this is the edge which that vertex splits. Both read positions of uniform subdivision only, so the mesh
+depends on the view and not on the way to it.
+
+Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
+beginning, and `until` says up to which drift an answer holds.
+"""
+
+import math
+
+import numpy as np
+
+from ._kernels_rgb_address import middle_key, slot_of
+from ._kernels_rgb_criteria import has_wanted_parents, wants_edge
+from ._kernels_rgb_known import ASK_BORN
+from ._kernels_rgb_layout import (
+    BASE_COUNT,
+    BLUE,
+    BORN,
+    CHAIN,
+    FACES,
+    FACES_IN_USE,
+    FREE_CODE,
+    GREEN,
+    MEETS,
+    MERGES,
+    NEEDED,
+    NONE,
+    PRESENT,
+    PRESENT_COUNT,
+    SPLITS,
+    VERTICES,
+    WAITING,
+    WANTED,
+    ask_around,
+    colour,
+    corner_at,
+    dequeue,
+    edge_level,
+    enqueue,
+    find_edge,
+    lean,
+)
+from ._kernels_rgb_merge import merge_topology
+from ._kernels_rgb_points import ensure, set_normal
+from ._kernels_rgb_split import opposite, split_topology
+
+#: Slots that examining a face may use: forced splits and stencils go down through the levels.
+ROOM = 1024
+
+
+@lean
+def split_edge(net, f, k):
+    """Split edge k of face f, both of whose faces allow it; returns the new vertex."""
+    face = net.faces[f]
+    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+    n = np.int64(face.beside[k])
+    c = opposite(net, f, k)
+    d = np.int64(NONE) if n == NONE else opposite(net, n, corner_at(net.faces[n], b))
+    v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
+    vertex = net.vertices[v]
+    vertex.diamond[0], vertex.diamond[1], vertex.diamond[2], vertex.diamond[3] = a, b, c, d
+    net.flags[v] |= PRESENT
+    if net.flags[v] & BORN == 0:
+        ensure(net, v, ASK_BORN)
+    set_normal(net, v)
+    vertex.until = 0.0
+    split_topology(net, f, k, v)
+    net.counts[SPLITS] += 1
+    net.counts[PRESENT_COUNT] += 1
+    return v
+
+
+@lean
+def merge_vertex(net, v):
+    """Take a mergeable vertex out of the mesh; what is known of it is kept."""
+    merge_topology(net, v)
+    net.flags[v] &= ~(PRESENT | WANTED | NEEDED | MEETS)
+    net.vertices[v].around = NONE
+    net.counts[MERGES] += 1
+    net.counts[PRESENT_COUNT] -= 1
+
+
+@lean
+def obstacle(net, f, k):
+    """3 g + h for the edge that is to be split before edge k of face f can be, or NONE."""
+    face = net.faces[f]
+    shade = colour(face.code)
+    if shade == GREEN:
+        return np.int64(NONE)
+    if shade == BLUE:
+        g = np.int64(face.beside[0])
+        return 3 * g + colour(net.faces[g].code)
+    return np.int64(NONE) if shade == k else 3 * f + shade
+
+
+@lean
+def force(net, f, k, until, view, limits, drift):
+    """Split edge k of face f, and before it whatever has to be; False if there are too few slots left.
+
+    That edge itself is known to be wanted up to a drift of `until`, or not known to be if that is 0.
+    """
+    chain = net.counts
+    chain[CHAIN], chain[CHAIN + 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
+    depth = 1
+    while depth > 0:
+        if not has_room(net):
+            return False
+        h = find_edge(net, chain[CHAIN + 2 * depth - 2], chain[CHAIN + 2 * depth - 1])
+        if h == NONE:
+            depth -= 1
+            continue
+        g, i = h // 3, h % 3
+        o = obstacle(net, g, i)
+        n = np.int64(net.faces[g].beside[i])
+        if o == NONE and n != NONE:
+            o = obstacle(net, n, corner_at(net.faces[n], net.faces[g].corners[(i + 1) % 3]))
+        if o != NONE:
+            face, j = net.faces[o // 3], o % 3
+            chain[CHAIN + 2 * depth] = face.corners[j]
+            chain[CHAIN + 2 * depth + 1] = face.corners[(j + 1) % 3]
+            depth += 1
+            continue
+        v = split_edge(net, g, i)
+        depth -= 1
+        if depth == 0 and until > 0.0:
+            net.flags[v] |= WANTED | MEETS
+            net.vertices[v].until = until
+        else:
+            judge(net, v, view, limits, drift)
+    return True
+
+
+@lean
+def judge(net, v, view, limits, drift):
+    """Set a vertex's flags by its edge's parents and the criteria; what is known of the criteria is used."""
+    vertex = net.vertices[v]
+    a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
+    level = np.int64(net.births[v]) - 1
+    if not has_wanted_parents(net, a, b, level):
+        net.flags[v] &= ~WANTED
+        return
+    if vertex.until <= drift:
+        meets, slack = wants_edge(net, a, b, level, view, limits)
+        net.flags[v] = (net.flags[v] | MEETS) if meets else (net.flags[v] & ~MEETS)
+        vertex.until = drift + slack
+    if net.flags[v] & MEETS:
+        net.flags[v] |= WANTED
+    else:
+        net.flags[v] &= ~WANTED
+
+
+@lean
+def has_room(net):
+    """Whether slots will do for what one step may take."""
+    return net.counts[FACES] + ROOM <= len(net.faces) and net.counts[VERTICES] + ROOM <= len(net.vertices)
+
+
+@lean
+def review(net, order, begin, view, limits, drift):
+    """Set WANTED anew for the vertices of `order`, by rising birth, from the begin-th on.
+
+    Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted, so may edges at it.
+    """
+    for i in range(begin, len(order)):
+        if not has_room(net):
+            return i
+        v = np.int64(order[i])
+        was_wanted = net.flags[v] & WANTED
+        judge(net, v, view, limits, drift)
+        if net.flags[v] & WANTED and not was_wanted:
+            ask_around(net, v)
+    return len(order)
+
+
+@lean
+def mark_needed(net, order):
+    """Set NEEDED anew, from the last born to the first."""
+    for v in order:
+        net.flags[v] &= ~NEEDED
+    for i in range(len(order) - 1, -1, -1):
+        v = order[i]
+        if net.flags[v] & (WANTED | NEEDED):
+            diamond = net.vertices[v].diamond
+            level = net.births[v] - 1
+            for k in range(4):
+                u = diamond[k]
+                if u != NONE and level > 0 and net.births[u] == level:
+                    net.flags[u] |= NEEDED
+
+
+@lean
+def sort_by_birth(net, starts, order):
+    """order: the vertices in the mesh born after level 0, by birth; returns how many."""
+    starts[:] = 0
+    first, count = net.counts[BASE_COUNT], net.counts[VERTICES]
+    for v in range(first, count):
+        if net.flags[v] & PRESENT:
+            starts[net.births[v] + 1] += 1
+    for i in range(1, len(starts)):
+        starts[i] += starts[i - 1]
+    for v in range(first, count):
+        if net.flags[v] & PRESENT:
+            order[starts[net.births[v]]] = v
+            starts[net.births[v]] += 1
+    return starts[len(starts) - 1]
+
+
+@lean
+def coarsen(net, order):
+    """Take out the vertices that are not needed, finest first."""
+    for i in range(len(order) - 1, -1, -1):
+        v = np.int64(order[i])
+        if net.flags[v] & (WANTED | NEEDED) == 0:
+            merge_vertex(net, v)
+
+
+@lean
+def enqueue_expired(net, drift):
+    """Put the faces into the queue of which an edge's answer no longer holds."""
+    for f in range(net.counts[FACES]):
+        face = net.faces[f]
+        if min(face.until[0], min(face.until[1], face.until[2])) <= drift and face.code != FREE_CODE:
+            enqueue(net, f)
+
+
+@lean
+def is_asked_at(face, k):
+    """Whether it is this face that asks its green edge k: each edge is asked from one side only."""
+    return face.beside[k] == NONE or face.corners[k] < face.corners[(k + 1) % 3]
+
+
+#: How `refine` ended.
+DONE, NO_ROOM, ENOUGH = 0, 1, 2
+
+
+@lean
+def refine(net, view, limits, drift, most_splits, most_faces):
+    """Split what is wanted, beginning with the faces in the queue, up to so many splits ever and faces."""
+    while net.counts[WAITING] > 0:
+        if not has_room(net):
+            return NO_ROOM
+        if net.counts[SPLITS] >= most_splits or net.counts[FACES_IN_USE] > most_faces:
+            return ENOUGH
+        f = dequeue(net)
+        face = net.faces[f]
+        if face.code == FREE_CODE:
+            continue
+        for k in range(3):
+            if face.until[k] > drift:
+                continue
+            # So it stays for red edges, for those asked from the other side, and for those whose makers are
+            # not wanted: should that change, it becomes 0.
+            face.until[k] = math.inf
+            level = edge_level(face.code, k)
+            if level == NONE or not is_asked_at(face, k):
+                continue
+            a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+            if not has_wanted_parents(net, a, b, level):
+                continue
+            meets, slack = wants_edge(net, a, b, level, view, limits)
+            if meets:
+                face.until[k] = 0.0
+                if not force(net, f, k, drift + slack, view, limits, drift):
+                    enqueue(net, f)
+                    return NO_ROOM
+                break  # the face is another now, and in the queue
+            face.until[k] = drift + slack
+    return DONE

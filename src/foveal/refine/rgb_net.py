@@ -1,0 +1,143 @@
+"""The flat arrays of an RGB triangulation."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.base.errors import FovealError
+from foveal.mesh.trimesh import TriMesh
+
+from ._kernels_rgb_layout import WORDS
+from .cage import Cage
+
+__all__ = ["BASE", "FACE", "MAX_BASE", "VERTEX", "RgbNet", "check_base"]
+
+#: A face, in a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, `base` the control
+#: mesh's triangle it lies in, `code` its colour and level, `until[k]` the drift of the view up to which edge
+#: k is known not to be wanted split, or infinity for an edge that this face need not ask, `next` what follows
+#: in the queue. Of a free slot `beside[0]` is the next free one.
+FACE = np.dtype(
+    [
+        ("until", np.float64, 3),
+        ("corners", np.int32, 3),
+        ("beside", np.int32, 3),
+        ("base", np.int32),
+        ("next", np.int32),
+        ("code", np.uint8),
+        ("is_queued", np.bool_),
+    ],
+    align=True,
+)
+
+#: A vertex, in the mesh or only computed: where it was born, its limit, how much nearer to that it comes with
+#: each level; up to which drift it is known whether the edge it splits meets the criteria; the normal and
+#: spread of the triangles it was born between; the ends and apexes of that edge; its address, one of its
+#: faces, and when it was last used. Of a free slot `diamond[0]` is the next one.
+VERTEX = np.dtype(
+    [
+        ("born", np.float64, 3),
+        ("limit", np.float64, 3),
+        ("shrink", np.float64),
+        ("until", np.float64),
+        ("normal", np.float32, 3),
+        ("spread", np.float32),
+        ("diamond", np.int32, 4),
+        ("key", np.int64),
+        ("around", np.int32),
+        ("stamp", np.uint32),
+    ],
+    align=True,
+)
+
+#: A triangle of the control mesh; `mates[k]` is 3 g + h for the edge beyond edge k, which is h of triangle g,
+#: NONE at the border.
+BASE = np.dtype([("corners", np.int32, 3), ("mates", np.int32, 3)])
+
+#: Triangles of a control mesh at most: addresses have 21 bits for them.
+MAX_BASE = 1 << 21
+
+
+class RgbNet(NamedTuple):
+    """Faces of three vertices and three neighbours with a byte of colour and level; vertices by address.
+
+    Slots are reused, so that what did not change stays where it is. The first slots are the control mesh's
+    vertices and faces; its vertices stay there. `_kernels_rgb_layout.py` knows the packed words. What belongs
+    together lies together: each array makes each call longer.
+
+    Attributes
+    ----------
+    faces : (F,) FACE
+    vertices : (V,) VERTEX
+    births : (V,) int8
+        The level a vertex was born on; FREE for slots not in use.
+    flags : (V,) uint8
+    table : (2^n,) int32
+        Vertex slots by hashed address, EMPTY where there is none.
+    base : (m,) BASE
+    counts : (WORDS,) int64
+    """
+
+    faces: NDArray[Any]
+    vertices: NDArray[Any]
+    births: NDArray[np.int8]
+    flags: NDArray[np.uint8]
+    table: NDArray[np.int32]
+    base: NDArray[Any]
+    counts: NDArray[np.int64]
+
+    @classmethod
+    def empty(cls, faces: int, vertices: int, cage: Cage, /) -> "RgbNet":
+        """Room for so many faces and vertices over a control mesh."""
+        base = np.zeros(len(cage.faces), BASE)
+        base["corners"], base["mates"] = cage.faces, _mates(cage)
+        return cls(
+            np.zeros(faces, FACE),
+            np.zeros(vertices, VERTEX),
+            np.full(vertices, -1, np.int8),
+            np.zeros(vertices, np.uint8),
+            _empty_table(vertices),
+            base,
+            np.zeros(WORDS, np.int64),
+        )
+
+    def grown(self, faces: int, vertices: int, /) -> "RgbNet":
+        """The same with more room; the table is to be filled."""
+        larger = self._replace(
+            faces=np.zeros(faces, FACE),
+            vertices=np.zeros(vertices, VERTEX),
+            births=np.full(vertices, -1, np.int8),
+            flags=np.zeros(vertices, np.uint8),
+            table=_empty_table(vertices),
+        )
+        for name in ("faces", "vertices", "births", "flags"):
+            old: NDArray[Any] = getattr(self, name)
+            getattr(larger, name)[: len(old)] = old
+        return larger
+
+
+def _empty_table(vertices: int) -> NDArray[np.int32]:
+    return np.full(1 << (2 * vertices - 1).bit_length(), -1, np.int32)
+
+
+def _mates(cage: Cage) -> NDArray[np.int32]:
+    """Two triangles may share several edges, so an edge's other side is the one with its ends."""
+    faces = cage.faces
+    mates = np.full((len(faces), 3), -1, np.int32)
+    for k in range(3):
+        for h in range(3):
+            g = cage.beside[:, k]
+            is_mate = (
+                (g >= 0) & (faces[g, h] == faces[:, (k + 1) % 3]) & (faces[g, (h + 1) % 3] == faces[:, k])
+            )
+            mates[is_mate, k] = 3 * g[is_mate] + h
+    return mates
+
+
+def check_base(mesh: TriMesh, name: str) -> None:
+    """Refuse a control mesh with more triangles than addresses have room for."""
+    if len(mesh.faces) > MAX_BASE:
+        raise FovealError(
+            f"{name}: {len(mesh.faces)} triangles are too many for a control mesh, of which there may be "
+            f"{MAX_BASE}. Simplify it first, or `build` it as it is."
+        )

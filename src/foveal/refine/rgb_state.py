@@ -1,0 +1,100 @@
+"""What the parts of an RGB triangulation share: its arrays, and making more room."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _kernels_rgb_base as base_kernels
+from . import _kernels_rgb_show as show_kernels
+from . import _kernels_rgb_update as kernels
+from ._kernels_rgb_address import LEVELS
+from ._kernels_rgb_layout import (
+    BASE_COUNT,
+    BORN,
+    BUTTERFLY,
+    CLOCK,
+    FACES,
+    FACES_IN_USE,
+    FREE_FACE,
+    FREE_VERTEX,
+    IN_USE,
+    PRESENT,
+    PRESENT_COUNT,
+    SCHEME,
+    VERTICES,
+)
+from .cage import Cage
+from .rgb_net import RgbNet
+
+__all__ = ["State"]
+
+#: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
+_FACES, _VERTICES = 1 << 16, 1 << 16
+
+
+class State:
+    """An RGB triangulation's arrays, replaced when they grow."""
+
+    def __init__(self, cage: Cage, scheme: int) -> None:
+        count, faces = len(cage.positions), len(cage.faces)
+        self.net = net = RgbNet.empty(2 * faces + _FACES, 2 * count + _VERTICES, cage)
+        net.counts[[FACES, FACES_IN_USE]] = faces
+        net.counts[[VERTICES, IN_USE, PRESENT_COUNT]] = count
+        net.counts[[FREE_FACE, FREE_VERTEX]] = -1
+        net.counts[SCHEME], net.counts[BASE_COUNT] = scheme, count
+        net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
+        net.faces["base"][:faces] = np.arange(faces)
+        net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
+        base_kernels.base_vertices(net, cage.positions, cage.starts, cage.ring, cage.is_border)
+        base_kernels.base_normals(net)
+
+    def grow(self) -> None:
+        """Twice the room."""
+        self.net = self.net.grown(2 * len(self.net.faces), 2 * len(self.net.vertices))
+        base_kernels.fill_table(self.net)
+
+    def box(self) -> NDArray[np.float64]:
+        """(8, 3): the corners of a box around all that was computed yet."""
+        # Loop's surface stays in the control mesh's box, the butterfly's does not.
+        is_loop = self.net.counts[SCHEME] != BUTTERFLY
+        count = int(self.net.counts[BASE_COUNT if is_loop else VERTICES])
+        points = self.net.vertices["born"][:count][self.net.flags[:count] & BORN != 0]
+        sides = np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+        return np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
+
+    @property
+    def faces(self) -> int:
+        """Of the mesh."""
+        return int(self.net.counts[FACES_IN_USE])
+
+    @property
+    def vertices(self) -> int:
+        """Of the mesh."""
+        return int(self.net.counts[PRESENT_COUNT])
+
+    def order(self) -> NDArray[np.int32]:
+        """The vertices in the mesh born after level 0, by birth."""
+        order = np.empty(self.vertices, np.int32)
+        return order[: kernels.sort_by_birth(self.net, np.empty(LEVELS + 3, np.int64), order)]
+
+    def forget(self, capacity: int) -> None:
+        """Keep of the vertices that are not in the mesh so many, those that were used last; time goes on."""
+        net = self.net
+        net.counts[CLOCK] += 1
+        if int(net.counts[IN_USE] - net.counts[PRESENT_COUNT]) <= capacity:
+            return
+        count = int(net.counts[VERTICES])
+        outside = np.nonzero((net.births[:count] >= 0) & (net.flags[:count] & PRESENT == 0))[0]
+        excess = len(outside) - capacity
+        stamps = net.vertices["stamp"][outside]
+        oldest = np.argpartition(stamps, excess - 1)[:excess]
+        show_kernels.forget(net, outside[oldest])
+
+    def placed(self, is_limit: bool) -> NDArray[np.float64]:
+        """(V, 3): where the vertices of the mesh stand on the highest level beside them, or in the limit."""
+        count = int(self.net.counts[VERTICES])
+        levels, out = np.empty(count, np.int8), np.zeros((count, 3))
+        show_kernels.shown_levels(self.net, levels)
+        begin = 0
+        while (begin := int(show_kernels.place_all(self.net, levels, begin, is_limit, out))) < count:
+            self.grow()
+        return out
