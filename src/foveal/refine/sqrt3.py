@@ -20,6 +20,7 @@ from . import _kernels_sqrt3_update as kernels
 from ._kernels_sqrt3_layout import FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
 from .cage import Cage
 from .criteria import MAX_LEVEL, Criteria, view_of
+from .drift import Drift
 from .hidden import Hidden
 from .net import Net
 from .slots import Placing, Slots
@@ -28,9 +29,6 @@ __all__ = ["Sqrt3", "Update", "sqrt3"]
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
 _FACES, _VERTICES = 1 << 16, 1 << 15
-
-#: Of the mesh's size: how far the view may move before all is asked anew.
-_FAR = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +102,7 @@ class Sqrt3:
         low, high = cage.positions.min(axis=0), cage.positions.max(axis=0)
         # All levels lie in the control mesh's convex hull, so in its box.
         self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-        self._size = float(np.linalg.norm(high - low))
-        self._drift = self._size
-        self._view, self._limits = np.zeros(24), np.zeros((6, 3))
+        self._drift = Drift(float(np.linalg.norm(high - low)))
 
     def update(
         self,
@@ -134,13 +130,12 @@ class Sqrt3:
         view, limits = view_of(camera), (criteria or Criteria()).limits()
         if hidden is not None:
             view = np.concatenate([view, hidden.words])
-        is_same = np.array_equal(view, self._view) and np.array_equal(limits, self._limits)
         # Of the same view the rest is done: what was forced for faces not split yet is not to be undone.
-        undone = 0 if is_same else self._coarsen(view, limits)
+        undone = 0 if self._drift.is_still(view, limits) else self._coarsen(view, limits)
         before = self._vertices()
         most = before + most_splits if most_splits is not None else np.iinfo(np.int64).max
         chain = np.empty((2 * MAX_LEVEL + 2, 2), np.int64)
-        while not kernels.refine(self._net, most, chain, view, limits, self._drift):
+        while not kernels.refine(self._net, most, chain, view, limits, self._drift.total):
             self._net = self._net.grown(2 * len(self._net.faces), 2 * len(self._net.vertices))
         counts, vertices = self._net.counts, self._vertices()
         return Update(
@@ -153,8 +148,10 @@ class Sqrt3:
 
     def _coarsen(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> int:
         """Undo what a view does not need, and let faces wait that have to be asked."""
-        self._move(view, limits)
-        net, drift = self._net, self._drift
+        net = self._net
+        if not self._drift.move(view, limits, self._corners):
+            net.faces["until"] = net.vertices["until"] = 0.0
+        drift = self._drift.total
         order = np.empty(int(net.counts[VERTICES]), np.int32)
         starts = np.empty(MAX_LEVEL + 3, np.int64)
         count = kernels.sort_by_birth(net.births, len(order), starts, order)
@@ -165,22 +162,6 @@ class Sqrt3:
 
     def _vertices(self) -> int:
         return int(self._net.counts[VERTICES] - self._net.counts[FREE_VERTICES])
-
-    def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
-        """Add to the drift what the view moved by; for other limits, pixels, depths no answer holds."""
-        planes = (view[4:24] - self._view[4:24]).reshape(5, 4)
-        moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
-        self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
-        is_other = not (
-            np.array_equal(limits, self._limits)
-            and view[3] == self._view[3]
-            and np.array_equal(view[24:], self._view[24:])
-        )
-        # Kept in 32 bits, the drift has to begin anew before a slack is nothing beside it.
-        if is_other or self._drift > _FAR * self._size:
-            self._net.faces["until"] = self._net.vertices["until"] = 0.0
-            self._drift = self._size
-        self._view, self._limits = view, limits
 
     def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh.
