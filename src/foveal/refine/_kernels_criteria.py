@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Whether a triangle is to be refined for a view: from its corners and limit normals alone.
 
-`view` (24,): the eye, pixels per radian, five frustum planes as (normal, offset). `limits` (3, 3): for
-front faces, silhouettes and back faces the most iterations, the edge in pixels that is short enough, the
-bend that is flat enough.
+`view` (24 or more,): the eye, pixels per radian, five frustum planes as (normal, offset). `limits` (3 or
+more, 3): for front faces, silhouettes and back faces the most iterations, the edge in pixels that is short
+enough, the bend that is flat enough. What else they hold is for `_kernels_hidden.py`.
 """
 
 import math
@@ -24,6 +24,16 @@ BALL = 1.16
 
 
 @lean
+def longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz):
+    """Of the triangle a, b, c."""
+    ux, uy, uz = bx - ax, by - ay, bz - az
+    vx, vy, vz = cx - ax, cy - ay, cz - az
+    wx, wy, wz = cx - bx, cy - by, cz - bz
+    uu, vv, ww = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz
+    return math.sqrt(max(uu, max(vv, ww)))
+
+
+@lean
 def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, u, v, w):
     """(is wanted, slack) of the triangle a, b, c of a level, at vertices u, v, w: whether to split it.
 
@@ -39,9 +49,7 @@ def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, 
         return False, math.inf
     ux, uy, uz = bx - ax, by - ay, bz - az
     vx, vy, vz = cx - ax, cy - ay, cz - az
-    wx, wy, wz = cx - bx, cy - by, cz - bz
-    uu, vv, ww = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz
-    longest = math.sqrt(max(uu, max(vv, ww)))
+    longest = longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)
     x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
     dx, dy, dz = view[EYE] - x, view[EYE + 1] - y, view[EYE + 2] - z
     away = math.sqrt(dx * dx + dy * dy + dz * dz)

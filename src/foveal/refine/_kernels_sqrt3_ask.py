@@ -5,7 +5,8 @@ import math
 
 from foveal.base.jit import lean
 
-from ._kernels_criteria import is_wanted
+from ._kernels_criteria import BALL, THIRD, is_wanted, longest_edge
+from ._kernels_hidden import BASIS, is_hidden
 from ._kernels_sqrt3_layout import PARENT, WANTED, generation
 from ._kernels_sqrt3_points import position, virtual_apex
 
@@ -14,12 +15,22 @@ ROUNDED = 1.0 - 2.0**-22
 
 
 @lean
+def wants(net, u, v, w, level, view, limits, ax, ay, az, bx, by, bz, cx, cy, cz):
+    """(is wanted, slack) of the face of generation `level` at these vertices and places."""
+    if len(view) > BASIS:
+        x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
+        if is_hidden(view, x, y, z, BALL * longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)):
+            limits = limits[3:]
+    return is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, net.normals, u, v, w)
+
+
+@lean
 def wants_triangle(net, u, v, w, level, view, limits):
-    """(is wanted, slack) of the face of generation `level` at these vertices."""
+    """The same where these vertices are on the level."""
     ax, ay, az = position(net, u, level)
     bx, by, bz = position(net, v, level)
     cx, cy, cz = position(net, w, level)
-    return is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, net.normals, u, v, w)
+    return wants(net, u, v, w, level, view, limits, ax, ay, az, bx, by, bz, cx, cy, cz)
 
 
 @lean
@@ -71,8 +82,8 @@ def examine_beyond(net, h, view, limits, drift):
     wx, wy, wz = position(net, w, level)
     xx, xy, xz = position(net, x, level)
     bx, by, bz = position(net, b, level)
-    meets, slack = is_wanted(view, limits, level, wx, wy, wz, dx, dy, dz, bx, by, bz, net.normals, w, x, b)
+    meets, slack = wants(net, w, x, b, level, view, limits, wx, wy, wz, dx, dy, dz, bx, by, bz)
     if meets:
         return True, 0.0
-    meets, other = is_wanted(view, limits, level, xx, xy, xz, bx, by, bz, dx, dy, dz, net.normals, x, b, w)
+    meets, other = wants(net, x, b, w, level, view, limits, xx, xy, xz, bx, by, bz, dx, dy, dz)
     return meets, (drift + min(slack, other)) * ROUNDED

@@ -32,6 +32,7 @@ _NO_EDGE_PX = 1 / 256
 _AFAR_PX = 8.0
 _SPARE = 1.5  # a step changes the triangles by about 1.19, and where many pass a level at once by more
 _FRAMES = 7
+_CHANGE = 1.1  # fewer triangles or a larger budget by this have a step tried anew that was too much
 _SHIFT = 1.2  # less than this the budget of a rate does not follow what was measured
 
 
@@ -69,29 +70,38 @@ class Pace:
         To be tried next; the mesh that may be shown has this one.
     """
 
-    def __init__(self, *, budget: int) -> None:
-        self._most = budget
-        self._budget = budget
+    def __init__(self, *, least: int, budget: int) -> None:
+        self._range = least, max(least, budget)
+        self._budget = self._range[1]
         self._costs: deque[float] = deque(maxlen=_FRAMES)
         self._of_rate = math.inf
         self.step = 0
         self._over, self._fits = -1, COARSEST + 1
-        self._stride = 0
+        self._stride = 1
         self._triangles, self._told = 0, -1
+        self._tried = (-1, 0, 0)
 
     def begin(self, criteria: Criteria, /, *, budget: int, rate: float, is_leap: bool) -> None:
         """A new view. After a leap the last step says nothing, so what fits is come to from afar."""
-        self._budget = min(budget or self._most, self._most)
-        if rate and self._costs:
+        if self._over >= 0 and self.is_fit:
+            self._tried = (self._over, self._triangles, self._budget)
+        least, most = self._range
+        self._budget = max(least, min(budget or most, most, self._allowed(rate)))
+        if is_leap:
+            self.step, self._tried = max(self.step, _afar(criteria)), (-1, 0, 0)
+        self._over, self._fits, self._stride = -1, COARSEST + 1, 1
+        if not is_leap and self.is_ample:
+            self.finer(is_moving=True)
+
+    def _allowed(self, rate: float) -> int:
+        """The triangles that a rate allows, by what they cost."""
+        if not rate:
+            self._of_rate = math.inf
+        elif self._costs:
             allowed = 1000 / rate / median(self._costs)
             if not self._of_rate / _SHIFT < allowed < self._of_rate * _SHIFT:
                 self._of_rate = allowed
-            self._budget = int(min(self._budget, self._of_rate))
-        if not rate:
-            self._of_rate = math.inf
-        if is_leap:
-            self.step = max(self.step, _afar(criteria))
-        self._over, self._fits, self._stride = -1, COARSEST + 1, 0
+        return int(min(self._of_rate, sys.maxsize))
 
     def tell(self, triangles: int, /) -> None:
         """How many triangles `step` gave; where they are too many, the next step is a coarser one."""
@@ -101,8 +111,9 @@ class Pace:
             return
         self._over = max(self._over, self.step)
         if self._fits > COARSEST:
-            self._stride = max(1, 2 * self._stride, self._steps(triangles, self._budget))
-            self.step = min(COARSEST, self.step + self._stride)
+            # Each time twice as far, for views in which the triangles do not change as they should.
+            self.step = min(COARSEST, self.step + max(self._stride, self._steps(triangles, self._budget)))
+            self._stride *= 2
         else:
             self.step = (self._over + self._fits + 1) // 2
 
@@ -123,17 +134,24 @@ class Pace:
 
     @property
     def is_ample(self) -> bool:
-        """Whether a finer step would most likely be within the budget too."""
-        return self.step > max(0, self._over + 1) and self._triangles * _SPARE <= self._budget
+        """Whether a finer step would most likely be within the budget too, as far as the last views tell."""
+        return self.step > self._least and self._triangles * _SPARE <= self._budget
 
-    def finer(self) -> None:
-        """Try a finer step, by about what the budget leaves."""
+    def finer(self, *, is_moving: bool = False) -> None:
+        """Try a finer step, by about what the budget leaves; in motion none that was too much just before."""
         down = min(_OCTAVE, max(1, self._steps(self._budget, self._triangles)))
-        self.step = max(self._over + 1, self.step - down, 0)
+        self.step = max(self._least if is_moving else self._over + 1, self.step - down, 0)
 
-    def spent(self, milliseconds: float, triangles: int, /) -> None:
-        """What a frame of a moving view cost."""
-        self._costs.append(milliseconds / max(1, triangles))
+    @property
+    def _least(self) -> int:
+        """The step to try at most in motion: where many triangles pass a level at once, not the same anew."""
+        over, triangles, budget = self._tried
+        has_changed = self._triangles < triangles / _CHANGE or self._budget > budget * _CHANGE
+        return max(self._over, -1 if has_changed else over) + 1
+
+    def spent(self, per_triangle_ms: float, /) -> None:
+        """What a frame of a moving view cost for each of its triangles."""
+        self._costs.append(per_triangle_ms)
 
     @staticmethod
     def _steps(many: int, few: int) -> int:
@@ -147,14 +165,15 @@ def update_within(refined: Refiner, camera: Camera, criteria: Criteria, budget: 
     Parameters
     ----------
     refined : Refiner
-        To be updated.
+        To be updated; it has the control mesh's triangles yet.
     camera : Camera
     criteria : Criteria
         Are not exceeded.
     budget : int
         Triangles at most; 0 for no limit. A control mesh is never made coarser.
     """
-    pace = Pace(budget=budget or sys.maxsize)
+    least = len(refined.mesh().faces)
+    pace = Pace(least=least, budget=budget or sys.maxsize)
     pace.begin(criteria, budget=budget, rate=0, is_leap=budget > 0)
     while True:
         pace.tell(refined.update(camera, criteria=coarser(criteria, pace.step)).faces)

@@ -19,7 +19,9 @@ SCHEMES: tuple[Scheme, ...] = get_args(Scheme)
 class Refiner(Protocol):
     """A refinement that follows a camera, of any scheme."""
 
-    def update(self, camera: Camera, /, *, criteria: Criteria | None = None) -> Update:
+    def update(
+        self, camera: Camera, /, *, criteria: Criteria | None = None, most_splits: int | None = None
+    ) -> Update:
         """Bring the mesh to what `camera` sees."""
         ...
 

@@ -7,6 +7,7 @@ is on its way at most, and the newest request is the one that counts.
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from foveal.view.camera import Camera
 from .criteria import Criteria, Region
 from .pace import Pace, coarser, factor
 from .scheme import Scheme, refiner
+from .sqrt3 import Sqrt3, Update
 from .wire import Buffers, Head, Request, buffers, message
 
 __all__ = ["MOST_TRIANGLES", "Session", "origin_of", "warm"]
@@ -27,6 +29,7 @@ MOST_TRIANGLES = 2_000_000
 """The server's own limit: 400 MB of refinement and 60 MB for a first message."""
 
 _SLICE_S, _LEAP_S = 0.05, 0.4  # how long finer thresholds are tried before what there is is shown
+_SPLITS = 20_000  # between two looks at the clock and at the budget: about 20 ms
 _LEAP = 0.25  # of the distance to the target: a camera that moved further is somewhere else
 
 
@@ -75,13 +78,18 @@ class Session:
         extent = float(np.abs(mesh.positions - self.origin).max())
         if not extent < float(np.finfo(np.float32).max):
             raise FovealError(f"{name}: it is too large to be drawn. Scale it down.")
-        self._refined = refiner(mesh, scheme=scheme, name=name)
+        self._refined = refined = refiner(mesh, scheme=scheme, name=name)
+        self._update: Callable[..., Update] = refined.update
+        if isinstance(refined, Sqrt3):  # RGB updates are not cut
+            self._update = partial(refined.update, most_splits=_SPLITS)
         self._clock = clock
         self._lock = threading.Lock()
         self._newest: Request | None = None
         self._last: Request | None = None  # what the refinement stands at
-        self._pace = Pace(budget=MOST_TRIANGLES)
+        self._pace = Pace(least=len(mesh.faces), budget=MOST_TRIANGLES)
+        self._is_whole = True  # whether the last update had nothing left to split
         self._faces, self._triangles = len(mesh.faces), 0
+        self._work = 0  # triangles of all updates for one message
         self._sent = Buffers.empty()
         self._sequence = self._base = 0
         self._is_seen = True  # whether the last message was acknowledged
@@ -111,44 +119,51 @@ class Session:
         if request.seen != self._sequence and not is_lost:
             return None  # the last message is on its way
         is_new = self._last is None or request.wanted != self._last.wanted
-        is_done = not is_new and self._pace.is_settled
+        is_done = not is_new and self._is_settled
         if is_done and not is_lost:
             return None
-        begin = self._clock()
+        begin, self._work = self._clock(), 0
         if not is_done:
             self._refine(request, begin, is_new=is_new)
         refined = self._clock()
         sent = self._message(request, 1000 * (refined - begin))
         if is_new and self._sequence > 1:
-            spent = 1000 * (self._clock() - begin) + request.drawn_ms
-            self._pace.spent(spent, self._triangles)
+            spent = 1000 * (self._clock() - begin) / max(1, self._work)
+            self._pace.spent(spent + request.drawn_ms / max(1, self._triangles))
         return sent
 
     def _refine(self, request: Request, begin: float, *, is_new: bool) -> None:
         """Bring the mesh to what is wanted, as near as the budget and a slice of time let it come."""
         pace = self._pace
+        is_leap = is_new and self._is_risky(request) and _is_leap(self._last, request)
         if is_new:
-            pace.begin(
-                request.criteria,
-                budget=request.budget,
-                rate=request.rate,
-                is_leap=self._is_risky(request) and (self._last is None or _is_leap(self._last, request)),
-            )
+            pace.begin(request.criteria, budget=request.budget, rate=request.rate, is_leap=is_leap)
             self._last = request
-        else:
+        elif self._is_whole:
             pace.finer()
-        slice_s = _LEAP_S if is_new and self._sequence else _SLICE_S
+        slice_s = _LEAP_S if is_leap and self._sequence else _SLICE_S
         while True:
-            done = self._refined.update(request.camera, criteria=coarser(request.criteria, pace.step))
-            self._triangles = done.faces
+            criteria = coarser(request.criteria, pace.step)
+            done = self._update(request.camera, criteria=criteria)
+            self._triangles, self._is_whole = done.faces, done.is_done
+            self._work += done.faces
+            is_late = self._clock() - begin > slice_s
+            if not done.is_done and done.faces <= pace.budget:
+                if is_late:
+                    return
+                continue
             pace.tell(done.faces)
             if not pace.is_fit:
                 continue
-            # In motion a finer step is tried where it most likely fits; whether it is the finest, at rest.
-            is_over = pace.is_settled or (is_new and not pace.is_ample)
-            if is_over or self._clock() - begin > slice_s:
+            # In motion the step is as the last frame was; whether a finer one fits is tried at rest.
+            is_enough = is_new and not (is_leap and pace.is_ample)
+            if is_late or pace.is_settled or is_enough:
                 return
-            pace.finer()
+            pace.finer(is_moving=is_new)
+
+    @property
+    def _is_settled(self) -> bool:
+        return self._is_whole and self._pace.is_settled
 
     def _is_risky(self, request: Request) -> bool:
         """Whether a step for another view could give far more than the budget, and take as long."""
@@ -164,7 +179,7 @@ class Session:
         head = Head(
             sequence=self._sequence + 1,
             base=self._base,
-            is_settled=self._pace.is_settled,
+            is_settled=self._is_settled,
             is_limit=request.positions == "limit",
             triangles=self._triangles,
             milliseconds=milliseconds,
@@ -184,13 +199,12 @@ def warm(scheme: Scheme, /) -> None:
     for iterations in (3, 0):
         region = Region(iterations, 1e-3, 1e-3)
         refined.update(camera, criteria=Criteria(region, region, region))
-        for positions in ("control", "limit"):
-            slots_of(refined, positions=positions)
+        refined.slots(positions="limit")
 
 
-def _is_leap(last: Request, request: Request) -> bool:
+def _is_leap(last: Request | None, request: Request) -> bool:
     """Whether what the last view had refined says little of what this one will."""
-    if request.criteria != last.criteria:
+    if last is None or request.criteria != last.criteria:
         return True
     camera, before = request.camera, last.camera
     away = float(np.linalg.norm(camera.position - camera.target))

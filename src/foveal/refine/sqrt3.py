@@ -19,6 +19,7 @@ from . import _kernels_sqrt3_update as kernels
 from ._kernels_sqrt3_layout import FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
 from .cage import Cage
 from .criteria import MAX_LEVEL, Criteria, view_of
+from .hidden import Hidden
 from .net import Net
 from .slots import Placing, Slots
 
@@ -98,10 +99,16 @@ class Sqrt3:
         self._corners = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
         self._size = float(np.linalg.norm(high - low))
         self._drift = self._size
-        self._view, self._limits = np.zeros(24), np.zeros((3, 3))
+        self._view, self._limits = np.zeros(24), np.zeros((6, 3))
 
     def update(
-        self, camera: Camera, /, *, criteria: Criteria | None = None, most_splits: int | None = None
+        self,
+        camera: Camera,
+        /,
+        *,
+        criteria: Criteria | None = None,
+        hidden: Hidden | None = None,
+        most_splits: int | None = None,
     ) -> Update:
         """Bring the mesh to what `camera` sees, from where it is.
 
@@ -110,11 +117,16 @@ class Sqrt3:
         camera : Camera
             In the space of the mesh: of a placed model move the camera, inversely.
         criteria : Criteria, optional
+        hidden : Hidden, optional
+            Refine front faces that it hides as those that face away. A depth buffer other than the last
+            one has all asked anew, which takes half of what a fresh refinement does.
         most_splits : int, optional
             Stop after about so many, with a mesh that is whole but not yet as fine as wanted. Further updates
             go on, and end in the very mesh that one without this limit makes.
         """
         view, limits = view_of(camera), (criteria or Criteria()).limits()
+        if hidden is not None:
+            view = np.concatenate([view, hidden.words])
         is_same = np.array_equal(view, self._view) and np.array_equal(limits, self._limits)
         # Of the same view the rest is done: what was forced for faces not split yet is not to be undone.
         undone = 0 if is_same else self._coarsen(view, limits)
@@ -148,11 +160,15 @@ class Sqrt3:
         return int(self._net.counts[VERTICES] - self._net.counts[FREE_VERTICES])
 
     def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
-        """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
-        planes = (view[4:] - self._view[4:]).reshape(5, 4)
+        """Add to the drift what the view moved by; for other limits, pixels, depths no answer holds."""
+        planes = (view[4:24] - self._view[4:24]).reshape(5, 4)
         moved = float(np.abs(self._corners @ planes[:, :3].T + planes[:, 3]).max())
         self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
-        is_other = not np.array_equal(limits, self._limits) or view[3] != self._view[3]
+        is_other = not (
+            np.array_equal(limits, self._limits)
+            and view[3] == self._view[3]
+            and np.array_equal(view[24:], self._view[24:])
+        )
         # Kept in 32 bits, the drift has to begin anew before a slack is nothing beside it.
         if is_other or self._drift > _FAR * self._size:
             self._net.faces["until"] = self._net.vertices["until"] = 0.0

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +11,11 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike
 from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
-from foveal.mesh.trimesh import TriMesh
 
 from .refinement import Refinement, refinement_json, refinement_of
+
+if TYPE_CHECKING:  # which knows of kernels: half a second for those who show patches only
+    from foveal.mesh.trimesh import TriMesh
 
 __all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
@@ -33,7 +36,7 @@ class ControlMesh:
     up : "x", "y" or "z"
     """
 
-    mesh: TriMesh
+    mesh: "TriMesh"
     refinement: Refinement
     up: str
 
@@ -61,7 +64,7 @@ class CageReport:
 
 
 def write_cage(
-    mesh: TriMesh, path: PathLike, /, *, refinement: Refinement, up: str = "y", name: str = "mesh"
+    mesh: "TriMesh", path: PathLike, /, *, refinement: Refinement, up: str = "y", name: str = "mesh"
 ) -> CageReport:
     """Write a control mesh; vertices at one place become one.
 
@@ -117,6 +120,8 @@ def read_cage(path: PathLike, /) -> ControlMesh:
 
 def control_mesh(file: Container, /) -> ControlMesh:
     """The same of an open file."""
+    from foveal.mesh.trimesh import TriMesh
+
     file.expect(KIND, VERSION)
     header = file.header
     vertices, faces = _count(file, "vertices"), _count(file, "triangles")

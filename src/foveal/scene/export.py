@@ -120,7 +120,8 @@ def _refuse_source(path: Path) -> None:
     refuse_missing(path)
 
 
-def refuse_mesh_output(output: Path, source: Path | TriMesh) -> None:
+def refuse_mesh_output(output: Path, source: Path | TriMesh, /) -> None:
+    """Say before any work that a mesh cannot be written so."""
     if output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")
     if isinstance(source, Path):
@@ -128,7 +129,7 @@ def refuse_mesh_output(output: Path, source: Path | TriMesh) -> None:
     refuse_unwritable(output)
 
 
-def write_mesh(mesh: TriMesh, output: Path, up: str) -> None:
+def write_mesh(mesh: TriMesh, output: Path, up: str, /) -> None:
     """In the format that the suffix says."""
     from foveal.mesh.io import write_glb, write_ply
 

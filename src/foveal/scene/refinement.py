@@ -136,7 +136,7 @@ def refinement_of(data: dict[str, Any], where: str, /, *, default: Refinement | 
             given, was = data.get("criteria", {}).get(name, {}), getattr(base.criteria, name)
             bend = math.radians(given["bend_degrees"]) if "bend_degrees" in given else was.bend
             edge_px = float(given.get("edge_px", was.edge_px))
-            regions[name] = Region(given.get("iterations", was.iterations), edge_px, min(bend, math.pi))
+            regions[name] = Region(given.get("iterations", was.iterations), edge_px, bend)
         return Refinement(
             data.get("scheme", base.scheme),
             Criteria(**regions),

@@ -50,7 +50,7 @@ class Guard:
                 return
         if scope["type"] == "websocket":
             origins = [value for name, value in scope["headers"] if name == b"origin"]
-            is_ours = origins in ([b"http://" + hosts[0]], [b"https://" + hosts[0]])
+            is_ours = origins in ([b"%s://%s" % (kind, hosts[0])] for kind in (b"http", b"https"))
             await (self._app(scope, receive, send) if is_ours else refuse(send))
             return
         if scope["method"] not in ("GET", "HEAD"):

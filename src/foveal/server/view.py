@@ -30,7 +30,7 @@ def view(
 ) -> Running:
     """Show a mesh, a `.fov` or a scene.json in the viewer, without waiting for it to be closed.
 
-    Control meshes (`scheme="sqrt3"`, or a `.fov` that holds one) are refined here, as the page's camera moves.
+    Control meshes (`scheme="sqrt3"`, or a `.fov` of one) are refined here, as the page's camera moves.
 
     Parameters
     ----------

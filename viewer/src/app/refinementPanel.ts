@@ -15,8 +15,12 @@ export function makeRefinementPanel(app: App, control: RefinementControl): Sheet
   const sheet = new Sheet("refinement", WORDS.refinement);
   sheet.add(make("p", { class: "about" }, aboutOf(control)));
   addColours(sheet, app, control);
-  for (const setting of [...frontOf(control), ...silhouetteOf(control), ...costOf(control)])
-    sheet.addSlider(setting);
+  sheet.addHeading("Where the surface faces the eye");
+  for (const setting of frontOf(control)) sheet.addSlider(setting);
+  sheet.addHeading("On the silhouette");
+  for (const setting of silhouetteOf(control)) sheet.addSlider(setting);
+  sheet.addHeading("Everywhere");
+  for (const setting of everywhereOf(control)) sheet.addSlider(setting);
   sheet.addSelection({
     id: "positions",
     label: "Vertices",
@@ -27,9 +31,7 @@ export function makeRefinementPanel(app: App, control: RefinementControl): Sheet
     get: () => control.wants.positions,
     set: (positions) => control.choose({ positions }),
   });
-  sheet.addSwitches(WORDS.inset, [
-    { name: "Show it in a corner", get: () => control.isInsetOn, set: () => control.toggleInset() },
-  ]);
+  sheet.addSwitch({ name: WORDS.inset, get: () => control.isInsetOn, set: () => control.toggleInset() });
   sheet.addReset("Back to the scene's own", () => control.reset());
   return sheet;
 }
@@ -52,7 +54,7 @@ function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void 
   }
   sheet.addSelection({
     id: "faces",
-    label: "Colour",
+    label: "Colours",
     options: [
       ["plain", "None"],
       ["levels", "By level"],
@@ -86,7 +88,7 @@ function iterations(
     high: MOST_ITERATIONS,
     isLogarithmic: false,
     isWhole: true,
-    show: (value) => (value === 0 ? "none" : value === 1 ? "1 iteration" : `${value} iterations`),
+    show: (value) => (value === 0 ? "none" : `at most ${value}`),
     get,
     set: (value) => control.choose({ [id]: value }),
   };
@@ -110,36 +112,36 @@ function edges(control: RefinementControl, id: NumberKey, label: string, get: ()
 function frontOf(control: RefinementControl): NumberSetting[] {
   const front = () => control.wants.criteria.front;
   return [
-    iterations(control, "frontIterations", "Towards the eye", () => front().iterations),
-    edges(control, "frontPx", "Edges there", () => front().edge_px),
+    iterations(control, "frontIterations", "Iterations", () => front().iterations),
+    edges(control, "frontPx", "Edge length", () => front().edge_px),
   ];
 }
 
 function silhouetteOf(control: RefinementControl): NumberSetting[] {
   const silhouette = () => control.wants.criteria.silhouette;
   return [
-    iterations(control, "silhouetteIterations", "On the silhouette", () => silhouette().iterations),
-    edges(control, "silhouettePx", "Edges there", () => silhouette().edge_px),
-    {
-      id: "bend",
-      label: "Flat enough",
-      hint: "Triangles that bend less are not split.",
-      low: 0,
-      high: 30,
-      isLogarithmic: false,
-      show: (value) => (value === 0 ? "never" : `${Number(value.toPrecision(3))}°`),
-      get: () => (control.wants.criteria.front.bend * 180) / Math.PI,
-      set: (bendDegrees) => control.choose({ bendDegrees }),
-    },
+    iterations(control, "silhouetteIterations", "Iterations", () => silhouette().iterations),
+    edges(control, "silhouettePx", "Edge length", () => silhouette().edge_px),
   ];
 }
 
-function costOf(control: RefinementControl): NumberSetting[] {
+function everywhereOf(control: RefinementControl): NumberSetting[] {
   return [
+    {
+      id: "bend",
+      label: "Bend",
+      hint: "Where the surface bends less, nothing is split.",
+      low: 0,
+      high: 30,
+      isLogarithmic: false,
+      show: (value) => (value === 0 ? "any" : `${Number(value.toPrecision(3))}°`),
+      get: () => (control.wants.criteria.front.bend * 180) / Math.PI,
+      set: (bendDegrees) => control.choose({ bendDegrees }),
+    },
     {
       id: "refined-triangles",
       label: "Triangles at most",
-      hint: "Edges get longer everywhere to keep this.",
+      hint: "To keep this, edges get longer than wanted.",
       low: 1000,
       high: 2e6,
       isLogarithmic: true,

@@ -63,16 +63,22 @@ export class Sheet {
     this.add(make("div", { class: "setting" }, make("label", { for: select.id }, label), select));
   }
 
+  addHeading(text: string): void {
+    this.add(make("h3", {}, text));
+  }
+
+  addSwitch({ name, get, set }: Switch, parent?: HTMLElement): void {
+    const box = make("input", { type: "checkbox" });
+    box.addEventListener("change", () => set(box.checked));
+    this.onRefresh(() => {
+      box.checked = get();
+    });
+    (parent ?? this.#body).append(make("label", { class: "switch" }, box, name));
+  }
+
   addSwitches(legend: string, switches: readonly Switch[]): void {
     const group = make("fieldset", {}, make("legend", {}, legend));
-    for (const { name, get, set } of switches) {
-      const box = make("input", { type: "checkbox" });
-      box.addEventListener("change", () => set(box.checked));
-      this.onRefresh(() => {
-        box.checked = get();
-      });
-      group.append(make("label", {}, box, name));
-    }
+    for (const one of switches) this.addSwitch(one, group);
     this.add(group);
   }
 

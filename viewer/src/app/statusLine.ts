@@ -63,7 +63,9 @@ export class StatusLine {
       errorPx === null ? "" : `${WORDS.error} ${formatPixels(errorPx)}`,
       refinement ? `${WORDS.update} ${refinement.milliseconds.toFixed(1)} ms` : "",
       // by how much edges are longer than wanted, to keep the budgets
-      refinement ? WORDS.threshold(Number(refinement.threshold.toPrecision(2)).toString()) : "",
+      refinement && refinement.threshold > 1
+        ? WORDS.threshold(Number(refinement.threshold.toPrecision(2)).toString())
+        : "",
       framesPerSecond === null ? WORDS.still : `${Math.round(framesPerSecond)} ${WORDS.framesPerSecond}`,
     ];
     this.#parts.forEach((part, i) => {

@@ -9,8 +9,9 @@ import {
   PerspectiveCamera,
   Vector3,
 } from "three";
+import type { Triple } from "../format/graph";
 import { SCENE_RADIUS } from "./frame";
-import { frontOf } from "./navigation";
+import { distanceToFit, frontOf } from "./navigation";
 import { FIRST_TURN, type Turn } from "./turn";
 
 /** Where the inset is on the canvas, in CSS pixels from its top left corner. */
@@ -22,7 +23,8 @@ export interface InsetPlace {
 }
 
 const FIELD_OF_VIEW = 30;
-const MARGIN = 1.08;
+/** Surfaces do not reach the corners of their boxes. */
+const MARGIN = 0.85;
 const LINES = 0xe08a3c;
 /** Corners of the picture, round it. */
 const CORNERS = [
@@ -38,6 +40,8 @@ export class Inset {
   readonly frustum = new Group();
   place: InsetPlace | null = null;
   turn: Turn = FIRST_TURN;
+  /** Half the sides of the scene's box, in its frame. */
+  halfBox: Triple = [577, 577, 577];
   readonly #points = new Float32Array(3 * 16);
   readonly #geometry = new BufferGeometry();
 
@@ -85,14 +89,13 @@ export class Inset {
     const front = frontOf(up);
     const away = front.clone().applyAxisAngle(up, azimuth).multiplyScalar(Math.cos(elevation));
     away.addScaledVector(up, Math.sin(elevation));
-    const half = MathUtils.degToRad(FIELD_OF_VIEW) / 2;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * aspect));
-    const distance = (MARGIN * SCENE_RADIUS) / Math.sin(narrow);
-    camera.up.copy(up);
-    camera.position.copy(away).setLength(distance);
-    camera.lookAt(0, 0, 0);
+    away.normalize();
     camera.aspect = aspect;
-    camera.near = distance - 1.01 * SCENE_RADIUS;
+    const distance = MARGIN * distanceToFit(this.halfBox, away, up, camera);
+    camera.up.copy(up);
+    camera.position.copy(away).multiplyScalar(distance);
+    camera.lookAt(0, 0, 0);
+    camera.near = Math.max(0.01 * distance, distance - 1.01 * SCENE_RADIUS);
     camera.far = 4 * distance;
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();

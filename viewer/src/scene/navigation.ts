@@ -140,30 +140,10 @@ export class Navigation {
       .addScaledVector(up, u)
       .addScaledVector(front, f)
       .normalize();
-    const distance = this.#distanceToFit(towards, up) * HOME_MARGIN;
+    const distance = distanceToFit(this.halfBox, towards, up, camera) * HOME_MARGIN;
     const eye = towards.multiplyScalar(distance);
     void this.controls.setLookAt(eye.x, eye.y, eye.z, 0, 0, 0, isSmooth && !this.#isStill);
     this.onMove();
-  }
-
-  /** From how far the corners of the scene's box are all in the picture. */
-  #distanceToFit(towards: Vector3, up: Vector3): number {
-    const right = new Vector3().crossVectors(up, towards).normalize();
-    const above = new Vector3().crossVectors(towards, right);
-    const tanY = Math.tan(MathUtils.degToRad(this.camera.fov) / 2);
-    const tanX = tanY * this.camera.aspect;
-    let distance = 0;
-    for (let corner = 0; corner < 8; corner++) {
-      const [x, y, z] = this.halfBox.map((half, axis) => ((corner >> axis) & 1 ? half : -half)) as [
-        number,
-        number,
-        number,
-      ];
-      const point = new Vector3(x, y, z);
-      const across = Math.max(Math.abs(point.dot(right)) / tanX, Math.abs(point.dot(above)) / tanY);
-      distance = Math.max(distance, point.dot(towards) + across);
-    }
-    return distance;
   }
 
   /** Turn by degrees about the pivot. */
@@ -221,4 +201,33 @@ export class Navigation {
 export function frontOf(up: Vector3): Vector3 {
   const front = Math.abs(up.z) > 0.7 ? new Vector3(0, -1, 0) : new Vector3(0, 0, 1);
   return front.addScaledVector(up, -front.dot(up)).normalize();
+}
+
+/**
+ * From how far the corners of a box about the origin are all in the picture.
+ *
+ * @param towards - Unit vector from the box to the eye.
+ */
+export function distanceToFit(
+  halfBox: Triple,
+  towards: Vector3,
+  up: Vector3,
+  { fov, aspect }: PerspectiveCamera,
+): number {
+  const right = new Vector3().crossVectors(up, towards).normalize();
+  const above = new Vector3().crossVectors(towards, right);
+  const tanY = Math.tan(MathUtils.degToRad(fov) / 2);
+  const tanX = tanY * aspect;
+  let distance = 0;
+  for (let corner = 0; corner < 8; corner++) {
+    const [x, y, z] = halfBox.map((half, axis) => ((corner >> axis) & 1 ? half : -half)) as [
+      number,
+      number,
+      number,
+    ];
+    const point = new Vector3(x, y, z);
+    const across = Math.max(Math.abs(point.dot(right)) / tanX, Math.abs(point.dot(above)) / tanY);
+    distance = Math.max(distance, point.dot(towards) + across);
+  }
+  return distance;
 }

@@ -2,7 +2,7 @@
 import { encode, type Rgb } from "./shading";
 
 /**
- * sRGB bytes by level: lightness falls evenly (OKLCH, 0.94 to 0.42) while the hue goes from sand over green to
+ * sRGB bytes by level: lightness falls evenly (OKLCH, 0.95 to 0.4) while the hue goes from sand over green to
  * violet, so that the order is seen without colours too. Deeper levels all have the last.
  */
 export const LEVELS: readonly Rgb[] = makeLevels();
@@ -18,9 +18,8 @@ function makeLevels(): Rgb[] {
   const count = 10;
   return Array.from({ length: count }, (_, i) => {
     const share = i / (count - 1);
-    const lightness = 0.94 - 0.52 * share;
-    const chroma = 0.05 + 0.09 * Math.sin(Math.PI * Math.min(1, 0.25 + 0.6 * share));
-    return fromOklch(lightness, chroma, 85 + 215 * share);
+    const chroma = 0.045 + 0.075 * Math.sin(Math.PI * (0.15 + 0.75 * share));
+    return fromOklch(0.95 - 0.55 * share, chroma, 95 + 195 * share);
   });
 }
 

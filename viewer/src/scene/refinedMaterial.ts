@@ -1,6 +1,6 @@
 /** The shaders of a refinement: shaded as patches are (spec/shading.md), with vertices on their way. */
 import { DoubleSide, GLSL3, Matrix4, ShaderMaterial, Vector3 } from "three";
-import { LEVEL_MASK } from "../format/wire";
+import { COLOUR_SHIFT, LEVEL_MASK } from "../format/wire";
 import { DEPTH_FRAGMENT } from "./material";
 import { LEVELS, TRIPLET } from "./palette";
 import { PLASTER, SHADE_GLSL } from "./shading";
@@ -73,11 +73,13 @@ out vec4 pixel;
 ${SHADE_GLSL}
 void main() {
   vec3 facing = normalize(cross(dFdx(vPosition), dFdy(vPosition)));
-  vec3 srgb = areLevels ? palette[min(vTag & ${LEVEL_MASK}, ${LEVELS.length - 1})] : triplet[min(vTag >> 5, 2)];
+  vec3 srgb = areLevels ? palette[min(vTag & ${LEVEL_MASK}, ${LEVELS.length - 1})] : triplet[min(vTag >> ${COLOUR_SHIFT}, 2)];
   vec3 width = fwidth(vCorner);
-  vec3 near = 1.0 - smoothstep(0.4 * width, 1.4 * width, vCorner);
-  float room = 1.0 - smoothstep(0.15, 0.7, max(width.x, max(width.y, width.z)));
-  float ink = line * room * max(near.x, max(near.y, near.z));
+  vec3 near = 1.0 - smoothstep(0.3 * width, 1.2 * width, vCorner);
+  // one over the triangle's height in pixels: lines as strong on small triangles as on large ones would hide the colours
+  float small = max(width.x, max(width.y, width.z));
+  float strength = mix(1.0, 0.4, smoothstep(0.03, 0.2, small)) * (1.0 - smoothstep(0.25, 0.7, small));
+  float ink = line * strength * max(near.x, max(near.y, near.z));
   pixel = vec4(mix(shade(srgb, facing, facing), vec3(0.0), ink), 1.0);
 }
 `;

@@ -69,7 +69,9 @@ export class Stage {
     const boxes = parts.map((part) => ("asset" in part ? boxOf(part.asset.info) : part.box));
     const frame = frameOf(boxes);
     this.navigation.frame = frame;
-    this.navigation.halfBox = halfBoxOf(boxes, frame);
+    const halfBox = halfBoxOf(boxes, frame);
+    this.navigation.halfBox = halfBox;
+    this.painter.inset.halfBox = halfBox;
     const feed = new PatchFeed(streamer);
     this.#feed = feed;
     const { materials } = this.painter;

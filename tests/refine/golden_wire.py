@@ -1,0 +1,73 @@
+"""Writes `spec/golden/wire.json` and `wire_*.bin`, a session that pytest and vitest both read.
+
+    PYTHONPATH=tests python -m refine.golden_wire
+
+The slots are made up, so that nothing but the wire itself can change them.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from foveal.refine.slots import Slots
+from foveal.refine.wire import Buffers, Head, buffers, message
+from refine.wire_page import Page, wish
+
+FOLDER = Path(__file__).parents[2] / "spec" / "golden"
+ORIGIN = np.array([500_000.25, -4_000_000.5, 12.0])
+HEADS = [
+    Head(1, 0, False, False, 38, 1.5, 2.0),
+    Head(2, 1, False, False, 51, 0.25, 1.0905077),
+    Head(3, 2, True, False, 51, 0.125, 1.0),
+    Head(4, 0, True, True, 51, 12.0, 1.0),
+]
+
+
+def slots(rng: np.random.Generator, faces: int, vertices: int, free: int) -> Slots:
+    """Any slots, the last `free` faces free."""
+    corners = rng.integers(1, vertices, (faces, 3), dtype=np.int32)
+    levels = rng.integers(0, 31, faces).astype(np.uint8)
+    colours = rng.integers(0, 3, faces).astype(np.uint8)
+    corners[faces - free :], levels[faces - free :], colours[faces - free :] = 0, 0, 0
+    positions, starts = (ORIGIN + rng.integers(-99, 99, (vertices, 3)) / 8 for _ in range(2))
+    return Slots(corners, positions, starts, levels, colours)
+
+
+def session() -> list[Slots]:
+    """What the page is to have after each message: all, some and more, nothing, all anew."""
+    rng = np.random.default_rng(20)
+    first = slots(rng, 41, 27, 3)
+    second = slots(rng, 53, 70, 2)
+    for new, old in zip(second, first, strict=True):
+        new[: len(old)] = old
+    second.faces[38:41] = rng.integers(1, 70, (3, 3))
+    second.positions[7] += 0.125
+    second.positions[12], second.starts[12] = ORIGIN + 3, ORIGIN + 2.5
+    return [first, second, second, second._replace(positions=second.positions + 0.5)]
+
+
+def messages() -> list[bytes]:
+    """The session's messages."""
+    found, sent = [], Buffers.empty()
+    for head, there in zip(HEADS, session(), strict=True):
+        new = buffers(there, ORIGIN)
+        found.append(message(head, new, sent if head.base else Buffers.empty()))
+        sent = new
+    return found
+
+
+def main() -> None:
+    """Write them, with what a page makes of them."""
+    page, cases = Page(), []
+    for number, sent in enumerate(messages()):
+        (FOLDER / f"wire_{number}.bin").write_bytes(sent)
+        page.apply(sent)
+        case = {name: getattr(page, name) for name in ("faces", "positions", "starts", "levels", "colours")}
+        cases.append({"file": f"wire_{number}.bin", "head": page.head, **case})
+    data = {"request": wish(seen=1, budget=1000, rate=60, positions="limit", drawn_ms=3.5), "messages": cases}
+    (FOLDER / "wire.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
+
+
+if __name__ == "__main__":
+    main()

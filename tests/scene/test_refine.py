@@ -1,0 +1,123 @@
+"""`refine`: a control mesh as a camera has it refined."""
+
+import json
+
+import numpy as np
+import pytest
+
+import corpus
+from foveal import Camera, FovealError, TriMesh
+from foveal.mesh.io import read_mesh, write_ply
+from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain
+from foveal.refine import Criteria, Region, sqrt3
+from foveal.scene.cage_file import write_cage
+from foveal.scene.refine import refine
+from foveal.scene.refinement import Refinement
+from foveal.scene.render import home
+
+BALL = bumpy_sphere(2)
+VIEW = Camera.of([3, 1, 2], [0, 0, 0], width=640, height=480)
+
+
+@pytest.fixture
+def cage(tmp_path):
+    path = tmp_path / "ball.fov"
+    criteria = Criteria(Region(2), Region(3), Region(1))
+    write_cage(BALL, path, refinement=Refinement("sqrt3", criteria, "limit"), up="z")
+    return path
+
+
+def assert_same(a, b):
+    assert (a.positions == b.positions).all()
+    assert (a.faces == b.faces).all()
+
+
+def test_it_is_the_mesh_of_the_room():
+    assert_same(refine(BALL, camera=VIEW), sqrt3(BALL, VIEW))
+    criteria = Criteria(Region(2), Region(5, 1.0), Region(0))
+    assert_same(refine(BALL, camera=VIEW, criteria=criteria), sqrt3(BALL, VIEW, criteria=criteria))
+
+
+def test_a_file_a_camera_file_and_an_output(tmp_path):
+    write_ply(BALL, tmp_path / "ball.ply")
+    (tmp_path / "cam.json").write_text(json.dumps(VIEW.to_json()))
+    out = tmp_path / "out" / "fine.ply"
+    mesh = refine(tmp_path / "ball.ply", out, camera=tmp_path / "cam.json")
+    np.testing.assert_allclose(mesh.positions, sqrt3(BALL, VIEW).positions, atol=1e-6)  # PLY's float32
+    np.testing.assert_allclose(read_mesh(out).positions, mesh.positions, atol=1e-6)
+    assert (read_mesh(out).faces == mesh.faces).all()
+    refine(tmp_path / "ball.ply", out.with_suffix(".glb"), camera=VIEW)
+    assert len(read_mesh(out.with_suffix(".glb")).faces) == len(mesh.faces)
+
+
+def test_by_default_all_is_framed():
+    assert_same(refine(BALL), sqrt3(BALL, home([BALL.positions], up="y")))
+    assert_same(refine(BALL, up="z"), sqrt3(BALL, home([BALL.positions], up="z")))
+
+
+@pytest.mark.parametrize("mesh", [BALL, terrain(6), corpus.MESHES["single_triangle"]()])
+def test_everywhere_is_uniform(mesh):
+    for level in range(4):
+        found = refine(mesh, everywhere=True, criteria=Criteria(Region(level, 99.0)))
+        region = Region(level)
+        far = Camera.around(mesh.positions.min(axis=0) - 1, mesh.positions.max(axis=0) + 1)
+        expected = sqrt3(mesh, far, criteria=Criteria(region, region, region))
+        assert len(found.faces) == len(expected.faces)
+    if mesh is BALL:
+        assert len(found.faces) == len(BALL.faces) * 27
+
+
+def test_a_file_says_how_and_what_is_chosen_goes_before(cage):
+    from foveal.refine import Sqrt3
+
+    live = Sqrt3(BALL)
+    live.update(VIEW, criteria=Criteria(Region(2), Region(3), Region(1)))
+    assert_same(refine(cage, camera=VIEW), live.mesh(positions="limit"))
+    assert_same(refine(cage, camera=VIEW, positions="control"), live.mesh())
+    finer = refine(cage, camera=VIEW, criteria=Criteria(Region(4), Region(4), Region(0)))
+    assert len(finer.faces) > 2 * len(live.mesh().faces)
+
+
+def test_a_budget_is_kept():
+    criteria = Criteria(Region(9, 1.0), Region(12, 0.5), Region(0))
+    for budget in (400, 5_000, 50_000):
+        mesh = refine(BALL, camera=VIEW, criteria=criteria, budget=budget)
+        assert len(mesh.faces) <= budget
+        assert len(mesh.faces) > budget / 3
+    assert len(refine(BALL, camera=VIEW, criteria=criteria, budget=7).faces) == 320
+
+
+def test_vertices_at_one_place_are_one():
+    ball = icosphere(1)
+    soup = TriMesh(ball.positions[ball.faces].reshape(-1, 3), np.arange(240, dtype=np.int32).reshape(-1, 3))
+    assert len(refine(soup, everywhere=True, criteria=Criteria(Region(1))).positions) == 42 + 80
+
+
+def test_what_cannot_be_refined_is_said(tmp_path, cage):
+    with pytest.raises(FovealError, match="no such file"):
+        refine(tmp_path / "none.obj")
+    with pytest.raises(FovealError, match="one by one"):
+        (tmp_path / "scene.json").write_text("{}")
+        refine(tmp_path / "scene.json")
+    with pytest.raises(FovealError, match="between vertices"):
+        refine(corpus.MESHES["nonmanifold_edge"]())
+    with pytest.raises(FovealError, match=r"\.ply or \.glb"):
+        refine(BALL, tmp_path / "a.stl")
+    with pytest.raises(FovealError, match="built already"):
+        refine(cage, up="x")
+    with pytest.raises(FovealError, match="no such file"):
+        refine(BALL, camera=tmp_path / "none.json")
+    with pytest.raises(ValueError, match="scheme must be one of"):
+        refine(BALL, scheme="catmull")
+    assert not list(tmp_path.glob("*.ply"))
+
+
+@pytest.mark.parametrize("scheme", ["loop", "butterfly"])
+def test_other_schemes_are_there_or_refused_in_a_sentence(scheme):
+    import foveal.refine
+
+    if hasattr(foveal.refine, "Rgb"):
+        assert len(refine(BALL, camera=VIEW, scheme=scheme).faces) > 320
+    else:
+        with pytest.raises(FovealError, match="Choose sqrt3"):
+            refine(BALL, camera=VIEW, scheme=scheme)
