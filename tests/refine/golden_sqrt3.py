@@ -24,6 +24,8 @@ from foveal.view.camera import Camera
 
 PATH = Path(__file__).parents[2] / "spec" / "golden" / "sqrt3.json"
 
+LIMITS = 9  #: front, silhouette, back; the page leaves nothing out by a depth buffer
+
 
 def hull(count, seed):
     """Of points on a sphere: closed, with three to ten neighbours at a vertex."""
@@ -54,6 +56,10 @@ def bowl():
     return TriMesh.of(ball.positions[used], np.searchsorted(used, faces))
 
 
+def moved(mesh, by):
+    return TriMesh(mesh.positions + by, mesh.faces)
+
+
 CAGES = {
     "tetrahedron": tetrahedron,
     "single_triangle": corpus.single_triangle,
@@ -64,12 +70,12 @@ CAGES = {
     "hull": lambda: hull(30, 1),
     "bowl": bowl,
     "bipyramid": lambda: bipyramid(12),
-    "two_pieces": lambda: corpus.joined(icosphere(0), TriMesh(terrain(3).positions + 9, terrain(3).faces)),
-    "far_away": lambda: TriMesh(torus(6, 4).positions + [455_000.5, 5_020_000.25, 310.125], torus(6, 4).faces),
+    "two_pieces": lambda: corpus.joined(icosphere(0), moved(terrain(3), 9)),
+    "far_away": lambda: moved(torus(6, 4), (455_000.5, 5_020_000.25, 310.125)),
 }
 CRITERIA = {
     "usual": Criteria(),
-    "fine": Criteria(Region(8, 12.0), Region(9, 6.0), Region(2, 40.0)),
+    "fine": Criteria(Region(8, 16.0), Region(9, 8.0), Region(2, 40.0)),
     "bent": Criteria(Region(5, 0.0, 0.12), Region(7, 3.0, 0.02), Region(3, 0.0, 0.3)),
     "deep": Criteria(Region(4), Region(6), Region(2)),
     "everywhere": Criteria(Region(5), Region(5), Region(5)),
@@ -156,31 +162,41 @@ def _walk(number, name, mesh):
     return {"cage": name, "steps": steps}
 
 
-def _paces():
-    """What the search for a threshold does where a step's triangles are `top` / 2^(step / 4)."""
-    for top, budget, rate, is_leap, edge in (
-        (90_000, 30_000, 0, False, 4.0),
-        (90_000, 30_000, 0, True, 4.0),
-        (5_000_000, 20_000, 0, True, 0.0),
-        (800, 30_000, 0, False, 8.0),
-        (2_000_000, 0, 30, False, 2.0),
-        (7_000, 10, 0, False, 4.0),
-    ):
-        pace = Pace(budget=2_000_000)
-        pace.spent(20.0, 50_000)
+def _view(top, budget, rate=0, is_leap=False, is_moving=False):
+    return {"top": top, "budget": budget, "rate": rate, "is_leap": is_leap, "is_moving": is_moving}
+
+
+SEARCHES = [
+    (4.0, [_view(90_000, 30_000), _view(100_000, 30_000, is_moving=True), _view(60_000, 30_000)]),
+    (
+        4.0,
+        [_view(90_000, 30_000, is_leap=True), _view(20_000, 30_000, is_moving=True), _view(20_000, 90_000)],
+    ),
+    (0.0, [_view(5_000_000, 20_000, is_leap=True), _view(5_000_000, 21_000, is_moving=True)]),
+    (8.0, [_view(800, 30_000), _view(0, 30_000)]),
+    (2.0, [_view(2_000_000, 0, rate=30), _view(900_000, 0, rate=31, is_moving=True), _view(1e6, 0, rate=60)]),
+    (4.0, [_view(7_000, 10), _view(7_000, 6_000, is_moving=True), _view(7_000, 6_000)]),
+]
+
+
+def _searches():
+    """What the search for a threshold does where a step has `top` / 2^(step / 4) triangles, at least 12."""
+    for edge, views in SEARCHES:
+        pace = Pace(least=12, budget=2_000_000)
         criteria = Criteria(Region(6, edge), Region(8, edge / 2), Region(0))
-        pace.begin(criteria, budget=budget, rate=rate, is_leap=is_leap)
-        steps = []
-        while not pace.is_settled:
-            steps.append(pace.step)
-            pace.tell(max(12, int(top / 2 ** (pace.step / 4))))
-            if pace.is_fit and not pace.is_settled:
-                pace.finer()
-        yield {
-            **{"top": top, "budget": budget, "rate": rate, "is_leap": is_leap, "edge_px": edge},
-            "steps": steps,
-            "limits": coarser(criteria, pace.step).limits().reshape(-1).tolist(),
-        }
+        told = []
+        for view in views:
+            pace.spent(4e-4)
+            pace.begin(criteria, budget=view["budget"], rate=view["rate"], is_leap=view["is_leap"])
+            steps = []
+            while not (pace.is_fit if view["is_moving"] else pace.is_settled):
+                if pace.is_fit:
+                    pace.finer()
+                steps.append(pace.step)
+                pace.tell(max(12, int(view["top"] / 2 ** (pace.step / 4))))
+            limits = coarser(criteria, pace.step).limits().reshape(-1).tolist()[:LIMITS]
+            told.append({**view, "allowed": pace.budget, "steps": steps, "limits": limits})
+        yield {"edge_px": edge, "views": told}
 
 
 def golden():
@@ -202,13 +218,13 @@ def golden():
                         strict=True,
                     )
                 },
-                "limits": chosen.limits().reshape(-1).tolist(),
+                "limits": chosen.limits().reshape(-1).tolist()[:LIMITS],
             }
             for name, chosen in CRITERIA.items()
         },
         "walks": [_walk(i, name, mesh) for i, (name, mesh) in enumerate(cages.items())],
         "coarsest": COARSEST,
-        "paces": list(_paces()),
+        "searches": list(_searches()),
     }
 
 

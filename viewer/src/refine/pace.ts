@@ -14,8 +14,14 @@ import { type Criteria, REGIONS, type RegionLimits } from "../format/cage";
 
 /** 2^(i / 8), written out: powers differ between machines in the last bit. */
 const EIGHTHS = [
-  1, 1.0905077326652577, 1.189207115002721, 1.2968395546510096, 1.4142135623730951, 1.5422108254079407,
-  1.681792830507429, 1.8340080864093424,
+  1,
+  1.0905077326652577,
+  1.189207115002721,
+  1.2968395546510096,
+  Math.SQRT2,
+  1.5422108254079407,
+  1.681792830507429,
+  1.8340080864093424,
 ];
 const OCTAVE = EIGHTHS.length;
 
@@ -27,8 +33,12 @@ const AFAR_PX = 8;
 /** A step changes the triangles by about 1.19, and where many pass a level at once by more. */
 const SPARE = 1.5;
 const FRAMES = 7;
+/** Fewer triangles or a larger budget by this have a step tried anew that was too much. */
+const CHANGE = 1.1;
 /** Less than this the budget of a rate does not follow what was measured. */
 const SHIFT = 1.2;
+
+const NOT_TRIED = { over: -1, triangles: 0, budget: 0 };
 
 /** By how much `edge_px` is multiplied at a step. */
 export function factor(step: number): number {
@@ -64,31 +74,52 @@ export interface Terms {
 export class Pace {
   /** To be tried next; the mesh that may be shown has this one. */
   step = 0;
+  readonly #most: number;
   #budget: number;
   readonly #costs: number[] = [];
   #ofRate = Infinity;
   #over = -1;
   #fits = COARSEST + 1;
-  #stride = 0;
+  #stride = 1;
   #triangles = 0;
   #told = -1;
+  /** Of the view before: the step that was too much, what the one shown had, what was allowed. */
+  #tried = NOT_TRIED;
 
-  constructor(private readonly most: number) {
-    this.#budget = most;
+  /** @param least - Triangles of the control mesh, which no budget can go below. */
+  constructor(
+    private readonly least: number,
+    budget: number,
+  ) {
+    this.#most = Math.max(least, budget);
+    this.#budget = this.#most;
   }
 
   begin(criteria: Criteria, { budget, rate, isLeap }: Terms): void {
-    this.#budget = Math.min(budget || this.most, this.most);
-    if (rate && this.#costs.length > 0) {
-      const allowed = 1000 / rate / median(this.#costs);
-      if (!(this.#ofRate / SHIFT < allowed && allowed < this.#ofRate * SHIFT)) this.#ofRate = allowed;
-      this.#budget = Math.floor(Math.min(this.#budget, this.#ofRate));
+    if (this.#over >= 0 && this.isFit) {
+      this.#tried = { over: this.#over, triangles: this.#triangles, budget: this.#budget };
     }
-    if (!rate) this.#ofRate = Infinity;
-    if (isLeap) this.step = Math.max(this.step, afar(criteria));
+    const wanted = Math.min(budget || this.#most, this.#most, this.#allowed(rate));
+    this.#budget = Math.max(this.least, wanted);
+    if (isLeap) {
+      this.step = Math.max(this.step, afar(criteria));
+      this.#tried = NOT_TRIED;
+    }
     this.#over = -1;
     this.#fits = COARSEST + 1;
-    this.#stride = 0;
+    this.#stride = 1;
+    if (!isLeap && this.isAmple) this.finer(true);
+  }
+
+  /** The triangles that a rate allows, by what they cost. */
+  #allowed(rate: number): number {
+    if (!rate) {
+      this.#ofRate = Infinity;
+    } else if (this.#costs.length > 0) {
+      const allowed = 1000 / rate / median(this.#costs);
+      if (!(this.#ofRate / SHIFT < allowed && allowed < this.#ofRate * SHIFT)) this.#ofRate = allowed;
+    }
+    return Math.floor(Math.min(this.#ofRate, Number.MAX_SAFE_INTEGER));
   }
 
   /** How many triangles `step` gave, or already has; where they are too many, the next step is a coarser one. */
@@ -101,8 +132,9 @@ export class Pace {
     }
     this.#over = Math.max(this.#over, this.step);
     if (this.#fits > COARSEST) {
-      this.#stride = Math.max(1, 2 * this.#stride, steps(triangles, this.#budget));
-      this.step = Math.min(COARSEST, this.step + this.#stride);
+      // Each time twice as far, for views in which the triangles do not change as they should.
+      this.step = Math.min(COARSEST, this.step + Math.max(this.#stride, steps(triangles, this.#budget)));
+      this.#stride *= 2;
     } else {
       this.step = Math.floor((this.#over + this.#fits + 1) / 2);
     }
@@ -123,20 +155,27 @@ export class Pace {
     return this.isFit && (this.step === 0 || this.#over === this.step - 1);
   }
 
-  /** A finer step would most likely be within the budget too. */
+  /** A finer step would most likely be within the budget too, as far as the last views tell. */
   get isAmple(): boolean {
-    return this.step > Math.max(0, this.#over + 1) && this.#triangles * SPARE <= this.#budget;
+    return this.step > this.#leastMoving && this.#triangles * SPARE <= this.#budget;
   }
 
-  /** Try a finer step, by about what the budget leaves. */
-  finer(): void {
+  /** Try a finer step, by about what the budget leaves; in motion none that was too much just before. */
+  finer(isMoving = false): void {
     const down = Math.min(OCTAVE, Math.max(1, steps(this.#budget, this.#triangles)));
-    this.step = Math.max(this.#over + 1, this.step - down, 0);
+    this.step = Math.max(isMoving ? this.#leastMoving : this.#over + 1, this.step - down, 0);
   }
 
-  /** What a frame of a moving view cost. */
-  spent(milliseconds: number, triangles: number): void {
-    this.#costs.push(milliseconds / Math.max(1, triangles));
+  /** The step to try at most in motion: where many triangles pass a level at once, not the same anew. */
+  get #leastMoving(): number {
+    const { over, triangles, budget } = this.#tried;
+    const hasChanged = this.#triangles < triangles / CHANGE || this.#budget > budget * CHANGE;
+    return Math.max(this.#over, hasChanged ? -1 : over) + 1;
+  }
+
+  /** What a frame of a moving view cost for each of its triangles, in milliseconds. */
+  spent(perTriangle: number): void {
+    this.#costs.push(perTriangle);
     if (this.#costs.length > FRAMES) this.#costs.shift();
   }
 }
