@@ -55,7 +55,7 @@ PIXELS = """async (base64) => {
 def picture(page):
     """(h, w, 3) uint8: the canvas as it is on the screen, without the page's panels."""
     style = page.add_style_tag(
-        content="#label, #bar, #toast, #alerts, #progress { visibility: hidden !important }"
+        content="#label, #bar, #inset, #toast, #alerts, #progress { visibility: hidden !important }"
     )
     page.evaluate("new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve)))")
     # without animations: the picture comes in over 0.3 s, and may be settled before

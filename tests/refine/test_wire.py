@@ -3,7 +3,6 @@
 import json
 import math
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -94,11 +93,12 @@ def test_a_message_holds_copies():
     assert all((a == b).all() for a, b in zip(held, kept, strict=True))
 
 
-@pytest.mark.parametrize("length", range(0, 1272, 7))
-def test_the_page_refuses_every_prefix(length):
-    whole = (Path(golden_wire.FOLDER) / "wire_0.bin").read_bytes()
-    with pytest.raises((Refused, struct.error)):
-        Page().apply(whole[:length])
+@pytest.mark.parametrize("name", ["wire_0.bin", "wire_3.bin"])
+def test_the_page_refuses_every_prefix(name):
+    whole = (golden_wire.FOLDER / name).read_bytes()
+    for length in range(len(whole)):
+        with pytest.raises((Refused, struct.error)):
+            Page().apply(whole[:length])
 
 
 def changed(**values):

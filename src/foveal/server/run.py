@@ -155,7 +155,7 @@ def start(
         lifespan="off",
         ws="websockets-sansio",
         ws_max_size=1 << 16,  # a request has at most a quarter; up to here a sentence says so
-ws_per_message_deflate=False,  # half the bytes, but 7 ms of every frame (29 MB/s)
+        ws_per_message_deflate=False,  # half the bytes, but 7 ms of every frame (29 MB/s)
         timeout_graceful_shutdown=2,
         timeout_keep_alive=60,
     )

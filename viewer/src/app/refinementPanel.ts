@@ -50,7 +50,9 @@ function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void 
   const legend = make("div", { class: "legend", role: "img", "aria-label": "Levels from light to dark" });
   for (const [level, colour] of LEVELS.entries()) {
     const last = level === LEVELS.length - 1 ? "+" : "";
-    legend.append(make("span", { style: `--swatch: rgb(${colour.join(" ")})` }, `${level}${last}`));
+    const swatch = make("span", {}, `${level}${last}`);
+    swatch.style.setProperty("--swatch", `rgb(${colour.join(" ")})`); // as an attribute the page's policy forbids it
+    legend.append(swatch);
   }
   sheet.addSelection({
     id: "faces",
