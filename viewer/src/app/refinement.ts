@@ -5,11 +5,11 @@
  */
 import type { Refinement as Wants } from "../format/cage";
 import type { Problem } from "../format/problem";
+import type { Cage } from "../refine/cage";
 import { deviceHints, refinedTriangles } from "../scene/device";
 import { RefinedLayer } from "../scene/refinedLayer";
 import type { Part } from "../scene/stage";
 import { type Turn, turned } from "../scene/turn";
-import type { Cage } from "../stream/cage";
 import type { App } from "./app";
 import { InsetFrame } from "./insetFrame";
 import { note, showWarning } from "./notices";
@@ -19,7 +19,7 @@ import type { Sheet } from "./sheet";
 import { INITIAL } from "./state";
 import { WORDS } from "./words";
 
-export { openCage } from "../stream/cage";
+export { openCage } from "../refine/cage";
 
 export class RefinementControl {
   readonly #layers: RefinedLayer[] = [];

@@ -56,22 +56,28 @@ function facesBeside(faces: Int32Array, count: number, name: string): Int32Array
   for (let i = 0; i < faces.length; i++) {
     const from = faces[i]!;
     const to = faces[endOf(i)]!;
-    const edge = `the edge between vertices ${from} and ${to}`;
     if (from === to) throw noSurface(name, `triangle ${Math.floor(i / 3)} has the same vertex twice`);
     const low = Math.min(from, to);
-    let mates = 0;
+    let mate = NONE;
     for (let j = head[low]!; j !== NONE; j = next[j]!) {
-      const [begin, end] = [faces[j]!, faces[endOf(j)]!];
-      if (begin + end !== from + to || Math.min(begin, end) !== low) continue;
-      if (++mates > 1) throw noSurface(name, `${edge} has more than two triangles`);
-      if (begin === from) throw noSurface(name, `the two triangles at ${edge} face opposite sides`);
-      beside[i] = Math.floor(j / 3);
-      beside[j] = Math.floor(i / 3);
+      if (faces[j]! + faces[endOf(j)]! !== from + to) continue; // the lower one is the same
+      if (mate !== NONE) throw noSurface(name, `${edgeOf(from, to)} has more than two triangles`);
+      mate = j;
+    }
+    if (mate !== NONE) {
+      if (faces[mate] === from)
+        throw noSurface(name, `the two triangles at ${edgeOf(from, to)} face opposite sides`);
+      beside[i] = Math.floor(mate / 3);
+      beside[mate] = Math.floor(i / 3);
     }
     next[i] = head[low]!;
     head[low] = i;
   }
   return beside;
+}
+
+function edgeOf(from: number, to: number): string {
+  return `the edge between vertices ${from} and ${to}`;
 }
 
 /** Where the half-edge ends that begins at corner i: the next corner of its triangle. */
