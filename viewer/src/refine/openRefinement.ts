@@ -25,5 +25,6 @@ export async function openRefinement(
       `${name} is refined (${scheme}) by a server, and this page has none. Open it with: foveal view`,
     );
   }
-  return new PageSource({ mesh: await readControlMesh(file, info), origin: info.origin, name });
+  const mesh = await readControlMesh(file, info);
+  return new PageSource({ mesh, origin: info.origin, name }, file.container.size);
 }

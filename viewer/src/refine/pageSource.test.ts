@@ -51,21 +51,21 @@ async function settle(source: PageSource, wish: Wish): Promise<void> {
   });
 }
 
-test("a wish is granted, and nothing counts as received", async () => {
-  const source = new PageSource(START, () => new FakeWorker());
+test("a wish is granted, and only the file counts as received", async () => {
+  const source = new PageSource(START, 1234, () => new FakeWorker());
   const heard: SlotChanges[] = [];
   source.listen({ onChange: (changes) => heard.push(changes), onProblem: () => {} });
   await settle(source, WISH);
   expect(source.figures.triangles).toBe(golden.walks[4].steps[0].faces);
   expect(source.slots.faceCount).toBeGreaterThanOrEqual(source.figures.triangles);
-  expect(source.figures.receivedBytes).toBe(0);
+  expect(source.figures.receivedBytes).toBe(1234);
   expect(heard[0]!.isFresh).toBe(true);
   source.dispose();
 });
 
 test("a worker that fails says so, and is made anew when asked to", async () => {
   const workers: FakeWorker[] = [];
-  const source = new PageSource(START, () => {
+  const source = new PageSource(START, 1234, () => {
     workers.push(new FakeWorker());
     return workers.at(-1)!;
   });

@@ -16,12 +16,17 @@ export interface WorkerLike {
 }
 
 export class PageSource extends LiveSource {
-  constructor(start: StartMessage, make: () => WorkerLike = makeWorker) {
+  /** @param fileBytes - All that comes over the network. */
+  constructor(
+    start: StartMessage,
+    private readonly fileBytes: number,
+    make: () => WorkerLike = makeWorker,
+  ) {
     super("", () => new WorkerSocket(make(), start));
   }
 
   override get figures(): RefinementFigures {
-    return { ...super.figures, receivedBytes: 0 };
+    return { ...super.figures, receivedBytes: this.fileBytes };
   }
 }
 
