@@ -163,6 +163,7 @@ def test_a_mesh_that_is_no_surface_is_said_before_it_is_served(run, tmp_path, mo
         (["--positions", "best"], "--positions"),
         (["--budget", "-1"], "--budget"),
         (["--everywhere", "--camera", "cam.json"], "--camera"),
+        (["--everywhere", "--visible-only"], "--visible-only"),
         (["--camera"], "--camera"),
         (["--depth", "3"], "--depth"),
     ],

@@ -8,6 +8,7 @@ import pytest
 from e2e.page import idle, picture, stats
 from foveal.mesh.shapes import bumpy_sphere
 from foveal.refine import Criteria, Region, Sqrt3
+from foveal.refine.session import warm
 from foveal.scene import Scene, View
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import Refinement
@@ -26,7 +27,8 @@ PLAIN = "#v=1&n=0"
 
 @pytest.fixture(scope="module")
 def cage(tmp_path_factory):
-    """A control mesh of 320 triangles."""
+    """A control mesh of 320 triangles; no page waits for its kernels."""
+    warm("sqrt3")
     mesh = bumpy_sphere(2)
     path = tmp_path_factory.mktemp("cage") / "ball.fov"
     write_cage(mesh, path, refinement=Refinement("sqrt3", CRITERIA))
@@ -301,6 +303,39 @@ def test_picks_views_and_pictures_work_as_for_patches(open_page):
     with page.expect_download() as download:
         page.keyboard.press("s")
     assert len(download.value.path().read_bytes()) > 5000
+
+
+LOSE = """async () => {
+  const lost = document.getElementById("picture").getContext("webgl2").getExtension("WEBGL_lose_context");
+  lost.loseContext();
+  await new Promise(resolve => setTimeout(resolve, 300));
+  lost.restoreContext();
+  await new Promise(resolve => setTimeout(resolve, 300));
+}"""
+
+
+def test_lost_graphics_come_back_with_all_that_was_shown(open_page):
+    page = open_page(PLAIN)
+    before = picture(page)
+    page.evaluate(LOSE)
+    idle(page)
+    assert differs(picture(page), before) < 0.001
+    press(page, "m")
+    press(page, "m")
+    assert differs(picture(page), before) < 0.001
+
+
+def test_no_hole_while_the_mesh_changes(open_page):
+    page = open_page(PLAIN + "&b=black")
+    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH]
+    inside = np.hypot(rows - HEIGHT / 2, columns - WIDTH / 2) < 100  # well within the ball, which is closed
+    for step in range(24):
+        angle, away = 0.15 * step, 4 - 0.1 * step
+        position = [away * math.sin(angle), 0.2 * away, away * math.cos(angle)]
+        page.evaluate("camera => foveal.setCamera(camera)", FRONT | {"position": position})
+        assert picture(page)[inside].max(axis=1).min() > 15, "the black background shows through"
+    idle(page)
+    assert stats(page)["refinement"]["updates"] > 10
 
 
 def test_a_server_that_ends_is_told_and_the_picture_stays(open_page, site):

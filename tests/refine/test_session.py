@@ -216,12 +216,12 @@ class Clock:
     def __init__(self, session_of, ms_per_triangle, fixed_ms):
         self.now = 0.0
         self.session = session_of(self)
-        self.update = self.session._update
-        self.session._update = self.timed
+        self.update = self.session._refined.update
+        self.session._refined.update = self.timed
         self.ms_per_triangle, self.fixed_ms, self.noise = ms_per_triangle, fixed_ms, 1.0
 
-    def timed(self, camera, *, criteria):
-        done = self.update(camera, criteria=criteria)
+    def timed(self, camera, **options):
+        done = self.update(camera, **options)
         self.now += 0.001 * self.noise * (self.fixed_ms + self.ms_per_triangle * done.faces)
         return done
 

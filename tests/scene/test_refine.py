@@ -87,6 +87,17 @@ def test_a_budget_is_kept():
     assert len(refine(BALL, camera=VIEW, criteria=criteria, budget=7).faces) == 320
 
 
+def test_what_is_hidden_may_be_left_alone():
+    shifted = TriMesh(BALL.positions - [0, 0, 3], BALL.faces)
+    two = corpus.joined(BALL, shifted)  # one behind the other
+    eye = Camera.of([0, 0, 5], [0, 0, 0], width=640, height=480)
+    both, seen = refine(two, camera=eye), refine(two, camera=eye, visible_only=True)
+    behind = [np.count_nonzero(mesh.positions[:, 2] < -1.5) for mesh in (both, seen)]
+    assert behind[1] < behind[0] / 2
+    assert np.count_nonzero(seen.positions[:, 2] > -1.5) == len(both.positions) - behind[0]
+    assert len(refine(two, camera=eye, visible_only=True, budget=2_000).faces) <= 2_000
+
+
 def test_vertices_at_one_place_are_one():
     ball = icosphere(1)
     soup = TriMesh(ball.positions[ball.faces].reshape(-1, 3), np.arange(240, dtype=np.int32).reshape(-1, 3))

@@ -34,6 +34,9 @@ def refine(
     everywhere: Annotated[
         bool, typer.Option("--everywhere", help="Refine uniformly, --iterations times, whatever is seen.")
     ] = False,
+    visible_only: Annotated[
+        bool, typer.Option("--visible-only", help="Leave fronts alone that are behind others. For sqrt3.")
+    ] = False,
     up: Up = None,
     force: Force = False,
     *,
@@ -47,8 +50,9 @@ def refine(
     """
     from foveal.scene.refine import refine as refine_mesh
 
-    if everywhere and camera is not None:
-        raise typer.BadParameter("--everywhere asks no camera. Leave one out.", param_hint="--camera")
+    if everywhere and (camera is not None or visible_only):
+        which = "--visible-only" if camera is None else "--camera"
+        raise typer.BadParameter("--everywhere asks no camera. Leave one out.", param_hint=which)
     refuse_output(output, file, ".ply", ".glb", force=force)
     begin = time.monotonic()
     with telling.progress() as progress:
@@ -57,6 +61,7 @@ def refine(
             output,
             camera=camera,
             everywhere=everywhere,
+            visible_only=visible_only,
             up=up and up.value,
             progress=progress,
             **refining,

@@ -7,15 +7,15 @@ at the top, of equals the lowest node.
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 
-@kernel
+@lean
 def _comes_first(keys, a, b):
     return keys[a] > keys[b] or (keys[a] == keys[b] and a < b)
 
 
-@kernel
+@lean
 def _push(heap, size, keys, node):
     at = size
     while at > 0:
@@ -28,7 +28,7 @@ def _push(heap, size, keys, node):
     return size + 1
 
 
-@kernel
+@lean
 def _pop(heap, size, keys):
     """Take the top away; the heap is one shorter."""
     size -= 1
@@ -48,7 +48,7 @@ def _pop(heap, size, keys):
     return size
 
 
-@kernel
+@lean
 def screen_error(error, x, y, z, radius, eye, pixels_per_radian, near):
     """As `view.project.screen_error`, for one sphere."""
     if error <= 0.0:
@@ -62,7 +62,7 @@ def screen_error(error, x, y, z, radius, eye, pixels_per_radian, near):
     return pixels_per_radian * error / max(distance, near)
 
 
-@kernel
+@lean
 def find_seen(centres, radii, errors, planes, seen):
     """Mark the nodes that may show, expanded or not: what stands for a node is within its error of it."""
     for node in range(len(radii)):
@@ -75,7 +75,7 @@ def find_seen(centres, radii, errors, planes, seen):
         seen[node] = inside
 
 
-@kernel
+@lean
 def shown_triangles(node, first_patch, finer, triangles, seen):
     """How many triangles a node adds when it is expanded and none of its children is."""
     total = 0
@@ -85,7 +85,7 @@ def shown_triangles(node, first_patch, finer, triangles, seen):
     return total
 
 
-@kernel
+@lean
 def ideal_cut(
     bounds,
     view,
@@ -140,7 +140,7 @@ def ideal_cut(
         size = _pop(heap, size, keys)
 
 
-@kernel
+@lean
 def real_cut(
     order, keys, worst, patches, links, hidden, node_bytes, seen, available, triangle_budget, expanded, wanted
 ):
@@ -170,7 +170,7 @@ def real_cut(
     return missing, shown, held, worst
 
 
-@kernel
+@lean
 def drawn_patches(order, first_patch, finer, seen, expanded, drawn):
     """Fill `drawn` with the patches that stand in a cut, node by node; returns their number."""
     count = 0

@@ -3,12 +3,12 @@
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import squared_to_triangle
 
 
-@kernel
+@lean
 def turns_over(positions, faces, alive, starts, counts, refs, u, v, x, y, z):
     """Whether a face of u that does not hold v would turn over, or vanish, with u at (x, y, z)."""
     for i in range(starts[u], starts[u] + counts[u]):
@@ -42,7 +42,7 @@ def turns_over(positions, faces, alive, starts, counts, refs, u, v, x, y, z):
     return False
 
 
-@kernel
+@lean
 def breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, stamp, u, v):
     """Whether joining u and v would change the surface's topology. Uses marks `stamp` and `stamp + 1`."""
     shared = 0
@@ -77,7 +77,7 @@ def breaks_link(faces, alive, starts, counts, refs, valence, is_border, marks, s
     return left < (1 if shared == 1 else 3)
 
 
-@kernel
+@lean
 def vanished(positions, faces, alive, starts, counts, refs, u, v, x, y, z, enough):
     """The larger squared distance of u and v from the faces that their collapse to (x, y, z) leaves.
 
@@ -106,7 +106,7 @@ def vanished(positions, faces, alive, starts, counts, refs, u, v, x, y, z, enoug
     return max(best_u, best_v)
 
 
-@kernel
+@lean
 def squared_with_apex(positions, v, x, y, z, b, c):
     """Squared distance from vertex v to the triangle (x, y, z), b, c."""
     return squared_to_triangle(
@@ -125,7 +125,7 @@ def squared_with_apex(positions, v, x, y, z, b, c):
     )
 
 
-@kernel
+@lean
 def shared_faces(faces, alive, starts, counts, refs, u, v):
     """How many faces hold both u and v."""
     shared = 0

@@ -3,14 +3,14 @@
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import area_vector
 
 MISSING = -1
 
 
-@kernel
+@lean
 def to_grid(positions, faces, ratio, offset, moved, out, errors):
     """Round positions * ratio to `out`; errors[f] bounds how far face f moved, `offset` included.
 
@@ -29,7 +29,7 @@ def to_grid(positions, faces, ratio, offset, moved, out, errors):
         errors[f] = most * (1 + 1e-6)
 
 
-@kernel
+@lean
 def join(ids, table, keys, local, unique):
     """Number equal ids: local[i] is the number of ids[i], unique[local[i]] the first i that has it.
 
@@ -51,7 +51,7 @@ def join(ids, table, keys, local, unique):
     return count
 
 
-@kernel
+@lean
 def claim(ids, cell, owner):
     """Write down that `cell` uses these ids: owner -1 nobody yet, -2 several."""
     for i in ids:
@@ -61,14 +61,14 @@ def claim(ids, cell, owner):
             owner[i] = -2
 
 
-@kernel
+@lean
 def is_shared(ids, owner, out):
     """Whether several cells use the id."""
     for i in range(len(ids)):
         out[i] = owner[ids[i]] == -2
 
 
-@kernel
+@lean
 def split(faces, cell_of, number, first_face, order, stamps, index, vertices, first_vertex, local_faces):
     """Group faces by cell, each group with vertices of its own.
 
@@ -105,7 +105,7 @@ def split(faces, cell_of, number, first_face, order, stamps, index, vertices, fi
     return total
 
 
-@kernel
+@lean
 def vertex_normals(positions, faces, out):
     """Sum of the area vectors of the faces around each vertex, (n, 3) float64."""
     out[:] = 0.0
@@ -118,7 +118,7 @@ def vertex_normals(positions, faces, out):
             out[v, 2] += z
 
 
-@kernel
+@lean
 def mix(a, b, c):
     """A hash of three 64-bit patterns."""
     h = a * np.uint64(0x9E3779B97F4A7C15)
@@ -129,7 +129,7 @@ def mix(a, b, c):
     return h ^ (h >> np.uint64(31))
 
 
-@kernel
+@lean
 def weld(bits, first, group, groups, table, keys, twin):
     """twin[i] = number of the first vertex with exactly the same position, for hashes that fall into `group`.
 
@@ -155,7 +155,7 @@ def weld(bits, first, group, groups, table, keys, twin):
     return fresh
 
 
-@kernel
+@lean
 def odd_edges(faces, starts, counts, refs, locked, open_edges, totals):
     """Count what is odd: totals = (edges of one face, edges of more than two, faces there already, open).
 

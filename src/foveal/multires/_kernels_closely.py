@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import squared_to_face
 from ._kernels_walk import farthest
 
 
-@kernel
+@lean
 def file_faces(positions, faces, low, scale, size, starts, refs, is_counting):
     """Put each face into the boxes of a grid that its own box meets: first counting, then filling."""
     total = 0
@@ -30,7 +30,7 @@ def file_faces(positions, faces, low, scale, size, starts, refs, is_counting):
     return total
 
 
-@kernel
+@lean
 def span(positions, faces, f, axis, low, scale, size):
     """First and last box that face f meets along an axis."""
     a, b, c = positions[faces[f, 0], axis], positions[faces[f, 1], axis], positions[faces[f, 2], axis]
@@ -39,7 +39,7 @@ def span(positions, faces, f, axis, low, scale, size):
     return min(size - 1, max(0, first)), min(size - 1, max(0, last))
 
 
-@kernel
+@lean
 def nearest_face(x, y, z, positions, faces, low, scale, size, starts, refs, guess):
     """(face, squared distance) of the face nearest to a point; `guess` is any face."""
     best = guess
@@ -69,7 +69,7 @@ def nearest_face(x, y, z, positions, faces, low, scale, size, starts, refs, gues
     return best, d_best
 
 
-@kernel
+@lean
 def measure_closely(
     pending,
     pending_face,

@@ -9,7 +9,7 @@ it moved. Against measuring at once, with the queue built at one go: 1.46 -> 0.8
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_allowed import breaks_link, shared_faces, turns_over, vanished
 from ._kernels_quadrics import place
@@ -25,7 +25,7 @@ from ._kernels_quadrics import place
 VANISHED = 0.25
 
 
-@kernel
+@lean
 def push(heap, size, key):
     """Put a key into the heap's array (least first) of `size` keys."""
     i = size
@@ -38,7 +38,7 @@ def push(heap, size, key):
     heap[i] = key
 
 
-@kernel
+@lean
 def sift(heap, size, i, key):
     """Let `key` sink from place i of a heap of `size` keys."""
     while True:
@@ -54,7 +54,7 @@ def sift(heap, size, i, key):
     heap[i] = key
 
 
-@kernel
+@lean
 def survivor(into, v):
     """The vertex that v has become."""
     while into[v] != v:
@@ -63,13 +63,13 @@ def survivor(into, v):
     return v
 
 
-@kernel
+@lean
 def key_of(cost, slot):
     """Orders by cost: bits of a float that is not negative are ordered as it is; the slot breaks ties."""
     return (np.int64(np.float32(min(cost, 3e38)).view(np.int32)) << 32) | slot
 
 
-@kernel
+@lean
 def offer_all(positions, faces, alive, twins, quadrics, locked, versions, slots, heap, is_strict):
     """Fill the queue with every edge, once where the surface is a proper one; returns how many.
 
@@ -94,7 +94,7 @@ def offer_all(positions, faces, alive, twins, quadrics, locked, versions, slots,
     return count
 
 
-@kernel
+@lean
 def blend(attributes, positions, u, v, x, y, z):
     """Attributes of the new vertex, by where it lies along the edge."""
     ex, ey, ez = (
@@ -111,7 +111,7 @@ def blend(attributes, positions, u, v, x, y, z):
         attributes[u, k] += np.float32(s) * (attributes[v, k] - attributes[u, k])
 
 
-@kernel
+@lean
 def merge(faces, alive, starts, counts, refs, end, valence, u, v):
     """Rename v to u in all faces; what has both dies. u's list moves to `end`. Returns (died, end)."""
     died = 0
@@ -145,7 +145,7 @@ def merge(faces, alive, starts, counts, refs, end, valence, u, v):
     return died, end
 
 
-@kernel
+@lean
 def compact(alive, starts, counts, refs, fresh):
     """Copy the lists without dead faces into `fresh`; returns how much of it is used."""
     end = 0
@@ -162,7 +162,7 @@ def compact(alive, starts, counts, refs, fresh):
     return end
 
 
-@kernel
+@lean
 def collapse(
     positions,
     faces,

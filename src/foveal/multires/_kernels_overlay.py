@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import fan_exit, squared_from
 from ._kernels_trace import UNKNOWN
@@ -21,7 +21,7 @@ INSIDE = -(1 << 31)
 FAN = 1000
 
 
-@kernel
+@lean
 def outlines(
     positions,
     faces,
@@ -68,7 +68,7 @@ def outlines(
             fan(onto_faces, onto_twins, kept, place, begins, half)
 
 
-@kernel
+@lean
 def is_same(positions, v, onto_positions, z):
     """Whether two vertices are in one point."""
     return (
@@ -78,7 +78,7 @@ def is_same(positions, v, onto_positions, z):
     )
 
 
-@kernel
+@lean
 def fan(faces, twins, kept, place, begins, border):
     """Let the half-edges around the vertex where a border half-edge begins begin in the strips there."""
     z = faces[border // 3, border % 3]
@@ -100,14 +100,14 @@ def fan(faces, twins, kept, place, begins, border):
         is_over = is_past
 
 
-@kernel
+@lean
 def has_edge(twins, f, half):
     """Whether a half-edge or its twin is face f's."""
     twin = twins[half // 3, half % 3]
     return half // 3 == f or (twin >= 0 and twin // 3 == f)
 
 
-@kernel
+@lean
 def settle(
     positions,
     faces,
@@ -169,7 +169,7 @@ def settle(
                 depth[a] = math.sqrt(squared_from(onto_positions, a, positions, faces, under[b]))
 
 
-@kernel
+@lean
 def verify(faces, twins, onto_faces, onto_twins, begins, head, following, fine_half, is_open, is_open_onto):
     """Follow each coarse edge over the fine faces; where the chain breaks, the faces at it are open."""
     for edge in range(3 * len(onto_faces)):
@@ -203,7 +203,7 @@ def verify(faces, twins, onto_faces, onto_twins, begins, head, following, fine_h
             i = np.int64(following[i])
 
 
-@kernel
+@lean
 def step(twins, following, fine_half, i, now):
     """Over the crossing i of a list: from face `now` to the face beyond, or UNKNOWN.
 
@@ -224,7 +224,7 @@ def step(twins, following, fine_half, i, now):
     return np.int64(UNKNOWN)
 
 
-@kernel
+@lean
 def begin_inside(onto_faces, onto_twins, under, begins, is_rim):
     """Half-edges that begin inside begin in the face over their first vertex, unless a border is there."""
     is_rim[:] = False
@@ -238,7 +238,7 @@ def begin_inside(onto_faces, onto_twins, under, begins, is_rim):
             begins[half] = UNKNOWN if is_rim[z] else under[z]
 
 
-@kernel
+@lean
 def corners(
     faces, place, distance, onto_faces, under, depth, carried, suspicious, errors, is_open, is_open_onto
 ):

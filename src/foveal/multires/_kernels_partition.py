@@ -3,10 +3,10 @@
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 
-@kernel
+@lean
 def select(points, order, begin, end, axis, rank):
     """Reorder `order[begin:end]` such that the place `rank` holds what sorting by `axis` would put there.
 
@@ -37,7 +37,7 @@ def select(points, order, begin, end, axis, rank):
             return
 
 
-@kernel
+@lean
 def grow(points, order, limit, parity, low, high, nodes, planes, stack, boxes):
     """Split `points` by planes until no cell has more than `limit`: (nodes, cells).
 
@@ -104,7 +104,7 @@ def grow(points, order, limit, parity, low, high, nodes, planes, stack, boxes):
     return used, cells
 
 
-@kernel
+@lean
 def box(positions, low, high):
     """Least and greatest coordinates. NumPy's min over rows of three takes ten times as long."""
     for axis in range(3):
@@ -116,7 +116,7 @@ def box(positions, low, high):
             high[axis] = max(high[axis], positions[v, axis])
 
 
-@kernel
+@lean
 def corner_sums(positions, faces, first, stride, out):
     """out[i] = sum of the corners of face first + i stride: three times its centroid."""
     for i in range(len(out)):
@@ -128,7 +128,7 @@ def corner_sums(positions, faces, first, stride, out):
             out[i, axis] = s
 
 
-@kernel
+@lean
 def assign(positions, faces, nodes, planes, out):
     """The cell of each face, by its centroid (times three, as the tree's points are)."""
     for f in range(len(faces)):

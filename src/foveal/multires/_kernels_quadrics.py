@@ -7,12 +7,12 @@ A quadric is 11 numbers: xx xy xz yy yz zz x y z 1 of the summed squared plane d
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import BORDER, area_vector
 
 
-@kernel
+@lean
 def mark_border(faces, twins, is_border):
     """Whether a vertex is on an edge with one face."""
     is_border[:] = False
@@ -22,7 +22,7 @@ def mark_border(faces, twins, is_border):
                 is_border[faces[f, k]] = is_border[faces[f, (k + 1) % 3]] = True
 
 
-@kernel
+@lean
 def add_plane(quadrics, v, nx, ny, nz, d, weight):
     """Add weight * (n . x + d)^2 to the quadric of v."""
     quadrics[v, 0] += weight * nx * nx
@@ -37,7 +37,7 @@ def add_plane(quadrics, v, nx, ny, nz, d, weight):
     quadrics[v, 9] += weight * d * d
 
 
-@kernel
+@lean
 def face_quadrics(positions, faces, twins, border_weight, quadrics):
     """Quadrics of all vertices: planes of the faces, and a wall along each border edge.
 
@@ -76,7 +76,7 @@ def face_quadrics(positions, faces, twins, border_weight, quadrics):
                 add_plane(quadrics, j, wx, wy, wz, d, border_weight * size)
 
 
-@kernel
+@lean
 def place(positions, quadrics, locked, u, v):
     """(cost, x, y, z) of the best place for the vertex that u and v become, on the grid."""
     # Indexed, not sliced: a slice counts a reference, atomically.

@@ -6,7 +6,7 @@ A half-edge has the number 3 f + k: edge k of face f, from its corner k to corne
 
 import math
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 #: Instead of a twin: no other face is on the edge; or others are, but each is another's twin.
 BORDER, CROWDED = -1, -2
@@ -16,7 +16,7 @@ BORDER, CROWDED = -1, -2
 MOST = 2048
 
 
-@kernel
+@lean
 def incidence(faces, starts, counts, refs):
     """Faces around each vertex: `refs[starts[v]:starts[v] + counts[v]]`, a face once even if it repeats v."""
     counts[:] = 0
@@ -40,7 +40,7 @@ def incidence(faces, starts, counts, refs):
             counts[c] += 1
 
 
-@kernel
+@lean
 def twins_of(faces, starts, counts, refs, twins):
     """twins[f, k]: the half-edge beside this one, in pairs: first those that run opposite ways, by number.
 
@@ -72,7 +72,7 @@ def twins_of(faces, starts, counts, refs, twins):
                 pair_any(faces, starts, counts, refs, twins, f, k)
 
 
-@kernel
+@lean
 def pair_any(faces, starts, counts, refs, twins, f, k):
     """Give the half-edge (f, k) a twin whichever way it runs, or note that all others have one."""
     a, b = faces[f, k], faces[f, (k + 1) % 3]
@@ -91,7 +91,7 @@ def pair_any(faces, starts, counts, refs, twins, f, k):
                 twins[f, k] = CROWDED
 
 
-@kernel
+@lean
 def spread(start, twins, queue):
     """Give faces with start -1 the start of a neighbour, breadth first; returns how many have one."""
     end = 0
@@ -113,14 +113,14 @@ def spread(start, twins, queue):
     return end
 
 
-@kernel
+@lean
 def fan_exit(faces, f, v, is_left):
     """The edge of face f by which a turn around its vertex v leaves it."""
     corner = 0 if faces[f, 0] == v else (1 if faces[f, 1] == v else 2)
     return (corner + 2) % 3 if is_left else corner
 
 
-@kernel
+@lean
 def area_vector(positions, faces, f):
     """(x, y, z): along the normal of face f, twice its area long."""
     a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -137,7 +137,7 @@ def area_vector(positions, faces, f):
     return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
-@kernel
+@lean
 def unit_normal(positions, faces, f):
     """(x, y, z), zero for a face without area."""
     x, y, z = area_vector(positions, faces, f)
@@ -146,7 +146,7 @@ def unit_normal(positions, faces, f):
     return x * scale, y * scale, z * scale
 
 
-@kernel
+@lean
 def wall_between(positions, a, b, nx, ny, nz, mx, my, mz):
     """(x, y, z, d): the plane through a, b halfway between faces of normals n and m, n's side positive."""
     mx, my, mz = nx + mx, ny + my, nz + mz
@@ -164,7 +164,7 @@ def wall_between(positions, a, b, nx, ny, nz, mx, my, mz):
     return x, y, z, -(x * positions[a, 0] + y * positions[a, 1] + z * positions[a, 2])
 
 
-@kernel
+@lean
 def wall(positions, faces, twins, f, k):
     """The wall beyond edge k of face f, which has a twin."""
     nx, ny, nz = unit_normal(positions, faces, f)
@@ -172,7 +172,7 @@ def wall(positions, faces, twins, f, k):
     return wall_between(positions, faces[f, k], faces[f, (k + 1) % 3], nx, ny, nz, mx, my, mz)
 
 
-@kernel
+@lean
 def squared_to_segment(px, py, pz, ex, ey, ez):
     """Squared distance from p to the segment from the origin to e."""
     along = px * ex + py * ey + pz * ez
@@ -183,7 +183,7 @@ def squared_to_segment(px, py, pz, ex, ey, ez):
     return px * px + py * py + pz * pz
 
 
-@kernel
+@lean
 def squared_to_triangle(px, py, pz, ax, ay, az, bx, by, bz, cx, cy, cz):
     """Squared distance from a point to a triangle.
 
@@ -216,7 +216,7 @@ def squared_to_triangle(px, py, pz, ax, ay, az, bx, by, bz, cx, cy, cz):
     return best
 
 
-@kernel
+@lean
 def squared_to_face(x, y, z, positions, faces, f):
     """Squared distance from a point to face f."""
     a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -236,7 +236,7 @@ def squared_to_face(x, y, z, positions, faces, f):
     )
 
 
-@kernel
+@lean
 def squared_from(points, i, positions, faces, f):
     """Squared distance from points[i] to face f."""
     return squared_to_face(points[i, 0], points[i, 1], points[i, 2], positions, faces, f)

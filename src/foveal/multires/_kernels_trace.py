@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import fan_exit, squared_from, unit_normal, wall_between
 
@@ -26,7 +26,7 @@ WALK, TURNS, LISTED = 64, 24, 64
 UNKNOWN = -1
 
 
-@kernel
+@lean
 def moved_walls(positions, faces, twins, normals, out):
     """out (m, 3, 4): the walls of all faces, moved against the shift. normals (m, 3) is scratch."""
     for f in range(len(faces)):
@@ -44,13 +44,13 @@ def moved_walls(positions, faces, twins, normals, out):
             out[f, k, 3] = d + x * SHIFT_X + y * SHIFT_Y + z * SHIFT_Z
 
 
-@kernel
+@lean
 def side(walls, g, k, x, y, z):
     """Signed distance of the moved point to the wall through edge k of face g."""
     return walls[g, k, 0] * x + walls[g, k, 1] * y + walls[g, k, 2] * z + walls[g, k, 3]
 
 
-@kernel
+@lean
 def locate(positions, faces, start, onto_positions, onto_faces, onto_twins, walls, place, distance):
     """place[v]: the coarse face that fine vertex v is over, by a walk from start[its face]; and how far."""
     place[:] = UNKNOWN
@@ -76,7 +76,7 @@ def locate(positions, faces, start, onto_positions, onto_faces, onto_twins, wall
             distance[v] = math.sqrt(squared_from(positions, v, onto_positions, onto_faces, g))
 
 
-@kernel
+@lean
 def exit_of(walls, twins, g, came, vx, vy, vz, wx, wy, wz):
     """(edge, s): where the way from v to w leaves face g first, edge -1 if w is inside."""
     first, out = 2.0, -1
@@ -91,7 +91,7 @@ def exit_of(walls, twins, g, came, vx, vy, vz, wx, wy, wz):
     return out, first
 
 
-@kernel
+@lean
 def hinge_of(faces, twins, g, goal):
     """(vertex, is_left) of the shortest turn from face g to face goal, vertex -1 if they share none."""
     least, hinge, best = TURNS, np.int64(-1), False
@@ -113,7 +113,7 @@ def hinge_of(faces, twins, g, goal):
     return hinge, best
 
 
-@kernel
+@lean
 def along_edge(positions, a, b, x, y, z):
     """(s, distance): the place along the line from a to b nearest to a point, and the edge's distance."""
     x, y, z = x - positions[a, 0], y - positions[a, 1], z - positions[a, 2]
@@ -129,7 +129,7 @@ def along_edge(positions, a, b, x, y, z):
     return s, math.sqrt(x * x + y * y + z * z)
 
 
-@kernel
+@lean
 def enlist(head, following, along, fine_half, used, edge, s, half):
     """Put a crossing into its edge's list, as number `used`; whether there was room."""
     if used >= len(following):
@@ -148,7 +148,7 @@ def enlist(head, following, along, fine_half, used, edge, s, half):
     return True
 
 
-@kernel
+@lean
 def trace(
     positions,
     faces,

@@ -11,12 +11,12 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import kernel
+from foveal.base.jit import lean
 
 from ._kernels_surface import squared_to_face, wall
 
 
-@kernel
+@lean
 def farthest(polygons, at, count, positions, faces, g):
     """Largest squared distance from the corners of polygon `at` to face g."""
     worst = 0.0
@@ -26,7 +26,7 @@ def farthest(polygons, at, count, positions, faces, g):
     return worst
 
 
-@kernel
+@lean
 def cut(work, now, count, sides, stack, top):
     """Both parts of the convex polygon work[now]: what is inside to work[1 - now], outside to stack[top].
 
@@ -55,7 +55,7 @@ def cut(work, now, count, sides, stack, top):
     return n_in, n_out
 
 
-@kernel
+@lean
 def measure(
     positions,
     faces,

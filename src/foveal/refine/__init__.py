@@ -1,7 +1,8 @@
-"""Refinement that follows the eye: √3 subdivision of a control mesh where it is looked at."""
+"""Refinement of a control mesh: where it is looked at (√3), or everywhere (Loop, modified butterfly)."""
 
 from .criteria import Criteria, Region
 from .hidden import Hidden
 from .sqrt3 import Sqrt3, Update, sqrt3
+from .uniform import butterfly, loop
 
-__all__ = ["Criteria", "Hidden", "Region", "Sqrt3", "Update", "sqrt3"]
+__all__ = ["Criteria", "Hidden", "Region", "Sqrt3", "Update", "butterfly", "loop", "sqrt3"]

@@ -9,13 +9,11 @@ rate is held by the budget that it takes, from what a triangle cost in the last 
 import math
 import sys
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
 from statistics import median
 
-from foveal.view.camera import Camera
-
 from .criteria import Criteria, Region
-from .scheme import Refiner
 
 __all__ = ["COARSEST", "Pace", "coarser", "factor", "update_within"]
 
@@ -159,24 +157,26 @@ class Pace:
         return int(_OCTAVE / 2 * math.log2(max(1, many) / max(1, few)))
 
 
-def update_within(refined: Refiner, camera: Camera, criteria: Criteria, budget: int, /) -> float:
+def update_within(
+    update: Callable[[Criteria], int], criteria: Criteria, /, *, least: int, budget: int
+) -> float:
     """Refine for a view as finely as a budget of triangles allows; returns the factor that took.
 
     Parameters
     ----------
-    refined : Refiner
-        To be updated; it has the control mesh's triangles yet.
-    camera : Camera
+    update : function
+        Refines for criteria and gives the triangles that came of it.
     criteria : Criteria
         Are not exceeded.
+    least : int
+        Triangles of the control mesh, which are there in any case.
     budget : int
-        Triangles at most; 0 for no limit. A control mesh is never made coarser.
+        Triangles at most; 0 for no limit.
     """
-    least = len(refined.mesh().faces)
     pace = Pace(least=least, budget=budget or sys.maxsize)
     pace.begin(criteria, budget=budget, rate=0, is_leap=budget > 0)
     while True:
-        pace.tell(refined.update(camera, criteria=coarser(criteria, pace.step)).faces)
+        pace.tell(update(coarser(criteria, pace.step)))
         if pace.is_settled:
             return factor(pace.step)
         if pace.is_fit:

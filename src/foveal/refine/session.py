@@ -7,7 +7,6 @@ is on its way at most, and the newest request is the one that counts.
 import threading
 import time
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,6 @@ from foveal.view.camera import Camera
 from .criteria import Criteria, Region
 from .pace import Pace, coarser, factor
 from .scheme import Scheme, refiner
-from .sqrt3 import Sqrt3, Update
 from .wire import Buffers, Head, Request, buffers, message
 
 __all__ = ["MOST_TRIANGLES", "Session", "origin_of", "warm"]
@@ -78,10 +76,7 @@ class Session:
         extent = float(np.abs(mesh.positions - self.origin).max())
         if not extent < float(np.finfo(np.float32).max):
             raise FovealError(f"{name}: it is too large to be drawn. Scale it down.")
-        self._refined = refined = refiner(mesh, scheme=scheme, name=name)
-        self._update: Callable[..., Update] = refined.update
-        if isinstance(refined, Sqrt3):  # RGB updates are not cut
-            self._update = partial(refined.update, most_splits=_SPLITS)
+        self._refined = refiner(mesh, scheme=scheme, name=name)
         self._clock = clock
         self._lock = threading.Lock()
         self._newest: Request | None = None
@@ -144,7 +139,7 @@ class Session:
         slice_s = _LEAP_S if is_leap and self._sequence else _SLICE_S
         while True:
             criteria = coarser(request.criteria, pace.step)
-            done = self._update(request.camera, criteria=criteria)
+            done = self._refined.update(request.camera, criteria=criteria, most_splits=_SPLITS)
             self._triangles, self._is_whole = done.faces, done.is_done
             self._work += done.faces
             is_late = self._clock() - begin > slice_s

@@ -74,7 +74,8 @@ def request_of(text: str, /) -> Request:
         raise FovealError(f"request: it is longer than {MAX_REQUEST_BYTES} bytes.")
     try:
         data = json.loads(text)
-        assert isinstance(data, dict)
+        if not isinstance(data, dict):
+            raise TypeError(f"it is a {type(data).__name__}")
         camera, criteria = _camera(data["camera"]), _criteria(data["criteria"])
         budget, rate = _number(data, "budget", 2**32), _number(data, "rate", 1e6)
         drawn, seen = _number({"drawn_ms": 0, **data}, "drawn_ms", 1e9), _number(data, "seen", 2**32)
@@ -84,7 +85,7 @@ def request_of(text: str, /) -> Request:
         return Request(camera[0], criteria, int(budget), data["positions"], rate, drawn, int(seen), wanted)
     except FovealError:
         raise
-    except (ValueError, TypeError, KeyError, AssertionError, RecursionError, OverflowError) as error:
+    except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
         what = f"{type(error).__name__}: {error}"
         raise FovealError(f"request: it is no such object as spec/wire.md tells ({what:.200}).") from error
 

@@ -124,17 +124,21 @@ def prepare(
         with suppress(OSError):  # somebody else's file can be shown all the same
             os.utime(built, ns=(time.time_ns(), built.stat().st_mtime_ns))
         return built
+    _refuse_unwritable(root)
+    _sweep_litter(root)
+    build(source, built, progress=progress, **options)
+    _forget_oldest(root, limit_bytes, keep=built)
+    return built
+
+
+def _refuse_unwritable(root: Path) -> None:
     try:
-        refuse_unwritable(built)
+        refuse_unwritable(root / "any.fov")
     except FovealError as error:
         raise FovealError(
             f"{root}: what is built cannot be kept here. Build it to a place of your own: "
             "foveal build FILE -o FILE.fov."
         ) from error
-    _sweep_litter(root)
-    build(source, built, progress=progress, **options)
-    _forget_oldest(root, limit_bytes, keep=built)
-    return built
 
 
 def refuse_shaping(source: PathLike, options: BuildOptions, /, *, is_refined: bool = False) -> None:

@@ -1,8 +1,10 @@
 """A control mesh refined for a view, or everywhere, as a mesh."""
 
 import os
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
@@ -18,6 +20,9 @@ from .read import read
 from .refinement import Refinement, RefineOptions, chosen
 from .render import home, read_camera
 
+if TYPE_CHECKING:
+    from foveal.refine import Update
+
 __all__ = ["refine", "refined"]
 
 
@@ -28,6 +33,7 @@ def refine(
     *,
     camera: Camera | PathLike | None = None,
     everywhere: bool = False,
+    visible_only: bool = False,
     up: str | None = None,
     progress: Progress = SILENT,
     **options: Unpack[RefineOptions],
@@ -46,6 +52,8 @@ def refine(
         By default all is framed, as the viewer does at first. A path is of a camera file.
     everywhere : bool
         Refine uniformly instead, as often as the criteria's front faces.
+    visible_only : bool
+        Refine front faces that are behind others as those that face away; for √3.
     up : "x", "y" or "z", optional
         Of a mesh, the axis that points up, where it is not the format's own.
     progress : Progress
@@ -82,20 +90,45 @@ def refine(
             mesh = _everywhere(cage, name)
         else:
             eye = camera or home([cage.mesh.positions], up=cage.up)
-            mesh = refined(cage.mesh, cage.refinement, eye, name=name)
+            mesh = refined(cage.mesh, cage.refinement, eye, has_hidden=not visible_only, name=name)
         stage.advance(1)
     if output is not None:
         write_mesh(mesh, Path(output), cage.up)
     return mesh
 
 
-def refined(mesh: TriMesh, refinement: Refinement, camera: Camera, /, *, name: str = "mesh") -> TriMesh:
-    """A control mesh refined for one view, within its budget."""
+def refined(
+    mesh: TriMesh,
+    refinement: Refinement,
+    camera: Camera,
+    /,
+    *,
+    has_hidden: bool = True,
+    name: str = "mesh",
+) -> TriMesh:
+    """A control mesh refined for one view, within its budget, with or without front faces that are hidden."""
+    from foveal.refine import Sqrt3
+    from foveal.refine.hidden import Hidden
     from foveal.refine.pace import update_within
     from foveal.refine.scheme import refiner
 
     live = refiner(mesh, scheme=refinement.scheme, name=name)
-    update_within(live, camera, refinement.criteria, refinement.budget)
+    update: Callable[..., Update] = partial(live.update, camera)
+
+    def within(**options: Any) -> None:
+        update_within(
+            lambda criteria: update(criteria=criteria, **options).faces,
+            refinement.criteria,
+            least=len(mesh.faces),
+            budget=refinement.budget,
+        )
+
+    within()
+    if has_hidden:
+        return live.mesh(positions=refinement.positions)
+    if not isinstance(live, Sqrt3):
+        raise FovealError(f"{name}: what is hidden can be left out by sqrt3 only. Choose that.")
+    within(hidden=Hidden.behind(live.mesh(), camera))
     return live.mesh(positions=refinement.positions)
 
 

@@ -39,9 +39,15 @@ export function makeHelp(): HTMLDialogElement {
     make("tr", {}, cell("th", what), ...how.map((text, i) => cell("td", text, columns[i]))),
   );
   const table = make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows));
-  const keys = HELP_KEYS.map(([key, what]) =>
+  body.append(table, make("h3", {}, "More keys"), make("dl", { class: "keys" }));
+  addKeys(dialog, HELP_KEYS);
+  return dialog;
+}
+
+/** Tell of more keys on the help page. */
+export function addKeys(help: HTMLDialogElement, keys: typeof HELP_KEYS): void {
+  const rows = keys.map(([key, what]) =>
     make("div", {}, make("dt", {}, make("kbd", {}, key)), make("dd", {}, what)),
   );
-  body.append(table, make("h3", {}, "More keys"), make("dl", { class: "keys" }, ...keys));
-  return dialog;
+  help.querySelector(".keys")!.append(...rows);
 }

@@ -11,13 +11,14 @@ import { RefinedLayer } from "../scene/refinedLayer";
 import type { Part } from "../scene/stage";
 import { type Turn, turned } from "../scene/turn";
 import type { App } from "./app";
+import { addKeys } from "./dialogs";
 import { InsetFrame } from "./insetFrame";
 import { note, showWarning } from "./notices";
 import { type DeviceChoice, NO_CHOICE, type RefinementChoice, refinementWith } from "./refinementChoice";
 import { makeRefinementPanel } from "./refinementPanel";
 import type { Sheet } from "./sheet";
 import { INITIAL } from "./state";
-import { WORDS } from "./words";
+import { REFINEMENT_KEYS, WORDS } from "./words";
 
 export { openCage } from "../refine/cage";
 
@@ -30,6 +31,7 @@ export class RefinementControl {
   #strip: HTMLElement | undefined;
 
   constructor(private readonly app: App) {
+    addKeys(app.help, REFINEMENT_KEYS);
     this.#inset = new InsetFrame({
       onPlace: () => this.apply(),
       onTurn: (right, up) => this.turn(right, up),

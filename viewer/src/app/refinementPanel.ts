@@ -46,7 +46,9 @@ function aboutOf({ cages }: RefinementControl): string {
 }
 
 function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void {
-  const hasTriplet = cages.some(({ refinement }) => refinement.scheme !== "sqrt3");
+  // √3 triangles are all green
+  const isRgb = cages.some(({ refinement }) => refinement.scheme !== "sqrt3");
+  const hasTriplet = isRgb || app.state.faceColours === "triplet";
   const legend = make("div", { class: "legend", role: "img", "aria-label": "Levels from light to dark" });
   for (const [level, colour] of LEVELS.entries()) {
     const last = level === LEVELS.length - 1 ? "+" : "";

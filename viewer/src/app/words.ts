@@ -75,9 +75,6 @@ export const HELP_KEYS: readonly (readonly [string, string])[] = [
   ["W", "wireframe"],
   ["P", "patch colours"],
   ["B", "bounding spheres"],
-  ["R", "refinement"],
-  ["M", "colour by level"],
-  ["E", "mesh from elsewhere"],
   ["S", "save picture"],
   ["L", "copy link"],
   ["X", "full screen"],
@@ -87,6 +84,13 @@ export const HELP_KEYS: readonly (readonly [string, string])[] = [
   ["H", "this help"],
   ["1 – 9", "named views"],
   ["Esc", "close"],
+];
+
+/** Keys for what is refined where it is looked at. */
+export const REFINEMENT_KEYS: typeof HELP_KEYS = [
+  ["R", "refinement"],
+  ["M", "colour by level"],
+  ["E", "mesh from elsewhere"],
 ];
 
 /** From where the scene is seen, e.g. "front, left, from above". */

@@ -172,8 +172,10 @@ export class RefinedLayer implements Layer {
   /** There are no parts that could have any. */
   forEachSphere(): void {}
 
-  /** All arrays are kept, so three uploads them again. */
-  clear(): void {}
+  /** All arrays are kept, and go up again. */
+  clear(): void {
+    this.#mesh.renew();
+  }
 
   #beforeDraw(material: Material): void {
     (material as Material & { uniformsNeedUpdate: boolean }).uniformsNeedUpdate = true;

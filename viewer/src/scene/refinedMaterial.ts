@@ -78,7 +78,7 @@ void main() {
   vec3 near = 1.0 - smoothstep(0.3 * width, 1.2 * width, vCorner);
   // one over the triangle's height in pixels: lines as strong on small triangles as on large ones would hide the colours
   float small = max(width.x, max(width.y, width.z));
-  float strength = mix(1.0, 0.4, smoothstep(0.03, 0.2, small)) * (1.0 - smoothstep(0.25, 0.7, small));
+  float strength = (1.0 - smoothstep(0.25, 0.7, small)) / (1.0 + 12.0 * small);
   float ink = line * strength * max(near.x, max(near.y, near.z));
   pixel = vec4(mix(shade(srgb, facing, facing), vec3(0.0), ink), 1.0);
 }

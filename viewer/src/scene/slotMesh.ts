@@ -74,19 +74,15 @@ export class SlotMesh {
     this.#faceCount = slots.faceCount;
     if (changes.isFresh) this.#corners.fill(0).set(slots.faces.subarray(0, 3 * slots.faceCount));
     else for (const f of changes.faces) copyFace(slots.faces, this.#corners, f);
-    if (hasMoreVertices || hasMoreFaces) this.#makeAll();
+    if (hasMoreVertices || hasMoreFaces) this.renew();
     else this.#upload(changes);
     this.surface.geometry.setDrawRange(0, 3 * slots.faceCount);
     this.wires.geometry.setDrawRange(0, 6 * slots.faceCount);
     this.tagged.geometry.setDrawRange(0, 3 * slots.faceCount);
   }
 
-  dispose(): void {
-    for (const mesh of [this.surface, this.wires, this.tagged]) mesh.geometry.dispose();
-  }
-
-  /** New buffers, larger ones. */
-  #makeAll(): void {
+  /** New buffers for the GPU: there are more slots, or the old ones are lost. */
+  renew(): void {
     const { position, from, normal, fromNormal, since } = this.#blend;
     this.surface.geometry.dispose();
     const geometry = new BufferGeometry();
@@ -96,6 +92,7 @@ export class SlotMesh {
     geometry.setAttribute("fromNormal", dynamic(fromNormal, 3));
     geometry.setAttribute("since", dynamic(since, 1));
     geometry.setIndex(dynamic(this.#corners, 1));
+    geometry.setDrawRange(0, 3 * this.#faceCount);
     this.surface.geometry = geometry;
     this.#makeWires();
     this.#makeTagged();
