@@ -92,7 +92,7 @@ def rows(
             why = "no Chromium or no Playwright here"
             yield Row("sqrt3_page_ms", case, None, "ms", "lower", bar=BAR_MS, why=why)
             continue
-        triangles = times["triangles"][-1]
+        triangles = times["first"]["triangles"]
         beside = {"orbit": sorted(times["orbit"])[runs // 2], "cold": times["first"]["fresh"]}
         case = f"{name} to {triangles:,}, {where}"
         yield Row.of("sqrt3_page_ms", case, times["fresh"], "ms", "lower", bar=BAR_MS, peers=beside)

@@ -1,11 +1,14 @@
 /** Sessions of the page: what comes out, applied as a server's messages are, is the refinement that was wished for. */
+import { readFileSync } from "node:fs";
 import { describe, expect, test } from "vitest";
 import text from "../../../spec/golden/sqrt3.json?raw";
-import type { Criteria } from "../format/cage";
+import { type Criteria, parseCage } from "../format/cage";
+import { parseContainer } from "../format/container";
 import { Problem } from "../format/problem";
 import { parseMessage, SlotBuffers, type WireMessage } from "../format/wire";
+import type { OpenFile } from "../stream/file";
 import type { WireCamera } from "../stream/refinement";
-import { controlMeshOf } from "./controlMesh";
+import { controlMeshOf, readControlMesh } from "./controlMesh";
 import { RefinementSession, type Request } from "./session";
 import { slotWords } from "./slotMessage";
 import { Sqrt3 } from "./sqrt3";
@@ -157,6 +160,22 @@ describe("what is no surface is refused in a sentence", () => {
       `odd.fov holds no surface that can be refined: ${sentence}`,
     );
   });
+});
+
+test("the control mesh of the golden file is read as it was written, and a damaged one is not", async () => {
+  const folder = new URL("../../../spec/golden/", import.meta.url);
+  const written = JSON.parse(readFileSync(new URL("cage.json", folder), "utf8"));
+  const bytes = new Uint8Array(readFileSync(new URL("cage.fov", folder)));
+  const container = parseContainer(bytes, "cage.fov", bytes.length);
+  const info = parseCage(container.header, "cage.fov");
+  const fileOf = (head: Uint8Array) =>
+    ({ source: { head, name: "cage.fov" }, container }) as unknown as OpenFile;
+  const { positions, faces } = await readControlMesh(fileOf(bytes), info);
+  expect([...positions]).toEqual(written.positions.flat());
+  expect([...faces]).toEqual(written.faces.flat());
+  const damaged = bytes.slice();
+  damaged[bytes.length - 5]! ^= 1;
+  await expect(readControlMesh(fileOf(damaged), info)).rejects.toThrow("cage.fov is damaged");
 });
 
 test("a control mesh is read from its bytes, or not at all", () => {
