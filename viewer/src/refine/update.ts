@@ -50,8 +50,8 @@ const ROUNDED = 1 - 2 ** -22;
 const ASKED = new Float64Array(9);
 const APEX = new Float64Array(3);
 
-/** Up to which drift the last answer holds. */
-let until = 0;
+/** Up to which drift the last answer holds. In an array, since a number of a module would be allocated each time. */
+const UNTIL = new Float64Array(1);
 
 /** Whether the face of generation `level` at these vertices meets the criteria; SLACK says how long. */
 function meets(net: Net, u: number, v: number, w: number, level: number, asked: Asked): boolean {
@@ -83,7 +83,7 @@ function wasWantedByParent(net: Net, v: number): boolean {
   return false;
 }
 
-/** Whether a face is wanted, `until` which drift. Without a wanted parent: until `wake` is told of one. */
+/** Whether a face is wanted, and UNTIL which drift. Without a wanted parent: until `wake` is told of one. */
 function examine(net: Net, f: number, asked: Asked): boolean {
   const { corners } = net;
   const level = generation(net.states[f]!);
@@ -91,11 +91,11 @@ function examine(net: Net, f: number, asked: Asked): boolean {
   const v = corners[3 * f + 1]!;
   const w = corners[3 * f + 2]!;
   if (!hasWantedParent(net, u, v, w, level)) {
-    until = Infinity;
+    UNTIL[0] = Infinity;
     return false;
   }
   const answer = meets(net, u, v, w, level, asked);
-  until = (asked.drift + SLACK[0]!) * ROUNDED;
+  UNTIL[0] = (asked.drift + SLACK[0]!) * ROUNDED;
   return answer;
 }
 
@@ -106,7 +106,7 @@ function examineBeyond(net: Net, h: number, asked: Asked): boolean {
   const w = corners[3 * h]!;
   const x = corners[3 * h + 1]!;
   const b = corners[3 * h + 2]!;
-  until = Infinity;
+  UNTIL[0] = Infinity;
   if ((net.flags[b]! & WANTED) === 0) return false;
   virtualApex(net, h, APEX, 0);
   position(net, w, level, ASKED, 0);
@@ -118,7 +118,7 @@ function examineBeyond(net: Net, h: number, asked: Asked): boolean {
   position(net, b, level, ASKED, 3);
   ASKED.set(APEX, 6);
   const answer = isWanted(asked.view, asked.limits, level, ASKED, net.normals, x, b, w);
-  until = (asked.drift + Math.min(slack, SLACK[0]!)) * ROUNDED;
+  UNTIL[0] = (asked.drift + Math.min(slack, SLACK[0]!)) * ROUNDED;
   return answer;
 }
 
@@ -205,10 +205,10 @@ export function coarsen(net: Net, asked: Asked): number {
   return undone;
 }
 
-/** Split face f, which is wanted itself (isOwn, `until` which drift) or only needed. */
+/** Split face f, which is wanted itself (isOwn, UNTIL which drift) or only needed. */
 function splitAs(net: Net, f: number, isOwn: boolean): void {
   const { flags, vertexUntil, pairs } = net;
-  const holds = isOwn ? until : 0;
+  const holds = isOwn ? UNTIL[0]! : 0;
   const b = split(net, f);
   flags[b]! |= isOwn ? MEETS | WANTED : NEEDED;
   vertexUntil[b] = holds;
@@ -233,11 +233,11 @@ export function refine(net: Net, most: number, asked: Asked): void {
     if (state === FREE || net.faceUntil[f]! > asked.drift) continue;
     if (isHalf(state)) {
       if (examineBeyond(net, f, asked)) force(net, f, asked);
-      else net.faceUntil[f] = until;
+      else net.faceUntil[f] = UNTIL[0]!;
     } else if (examine(net, f, asked)) {
       splitAs(net, f, true);
     } else {
-      net.faceUntil[f] = until;
+      net.faceUntil[f] = UNTIL[0]!;
     }
   }
 }

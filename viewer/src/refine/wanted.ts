@@ -36,9 +36,6 @@ const BALL = 1.16;
  */
 export const SLACK = new Float64Array(1);
 
-/** The triangle's middle as seen from the eye, how far that is; its normal; how little it bends. */
-const T = new Float64Array(8);
-
 /**
  * Whether to split the triangle of a level at vertices u, v, w, whose corners are the nine numbers `at`; SLACK says
  * how long that holds.
@@ -59,31 +56,16 @@ export function isWanted(
 ): boolean {
   SLACK[0] = Infinity;
   if (level >= Math.max(limits[FRONT]!, Math.max(limits[SILHOUETTE]!, limits[BACK]!))) return false;
-  const ax = at[0]!;
-  const ay = at[1]!;
-  const az = at[2]!;
-  const bx = at[3]!;
-  const by = at[4]!;
-  const bz = at[5]!;
-  const cx = at[6]!;
-  const cy = at[7]!;
-  const cz = at[8]!;
-  const ux = bx - ax;
-  const uy = by - ay;
-  const uz = bz - az;
-  const vx = cx - ax;
-  const vy = cy - ay;
-  const vz = cz - az;
-  const wx = cx - bx;
-  const wy = cy - by;
-  const wz = cz - bz;
-  const uu = ux * ux + uy * uy + uz * uz;
-  const vv = vx * vx + vy * vy + vz * vz;
-  const ww = wx * wx + wy * wy + wz * wz;
-  const longest = Math.sqrt(Math.max(uu, Math.max(vv, ww)));
-  const x = (ax + bx + cx) * THIRD;
-  const y = (ay + by + cy) * THIRD;
-  const z = (az + bz + cz) * THIRD;
+  const ux = at[3]! - at[0]!;
+  const uy = at[4]! - at[1]!;
+  const uz = at[5]! - at[2]!;
+  const vx = at[6]! - at[0]!;
+  const vy = at[7]! - at[1]!;
+  const vz = at[8]! - at[2]!;
+  const longest = longestEdge(at, ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz);
+  const x = (at[0]! + at[3]! + at[6]!) * THIRD;
+  const y = (at[1]! + at[4]! + at[7]!) * THIRD;
+  const z = (at[2]! + at[5]! + at[8]!) * THIRD;
   const dx = view[0]! - x;
   const dy = view[1]! - y;
   const dz = view[2]! - z;
@@ -98,26 +80,9 @@ export function isWanted(
     }
     slack = Math.min(slack, inside);
   }
-  T[0] = dx;
-  T[1] = dy;
-  T[2] = dz;
-  T[3] = away;
-  T[4] = uy * vz - uz * vy;
-  T[5] = uz * vx - ux * vz;
-  T[6] = ux * vy - uy * vx;
-  SLACK[0] = slack;
-  const kind = facing(level, normals, u, v, w);
-  return isCoarse(view, limits, level, kind, longest);
-}
-
-/** Which way the triangle in T faces; T[7] is then how little it bends, as a cosine. */
-function facing(level: number, normals: Float32Array, u: number, v: number, w: number): number {
-  const dx = T[0]!;
-  const dy = T[1]!;
-  const dz = T[2]!;
-  const nx = T[4]!;
-  const ny = T[5]!;
-  const nz = T[6]!;
+  const nx = uy * vz - uz * vy;
+  const ny = uz * vx - ux * vz;
+  const nz = ux * vy - uy * vx;
   const length = Math.sqrt(nx * nx + ny * ny + nz * nz);
   const scale = length > 0 ? 1 / length : 0;
   let low = (nx * dx + ny * dy + nz * dz) * scale;
@@ -140,32 +105,24 @@ function facing(level: number, normals: Float32Array, u: number, v: number, w: n
   // `low` changes as quickly as the eye moves at most, `high - low` by the normals' distance times that.
   const spread = level > 0 ? Math.sqrt(Math.max(2 - 2 * least, 0)) : 2;
   const margin = kind === SILHOUETTE ? Math.min(-front, -back) : Math.max(front, back);
-  SLACK[0] = Math.min(SLACK[0]!, margin / (1 + spread));
-  T[7] = least;
-  return kind;
+  slack = Math.min(slack, margin / (1 + spread));
+  let answer = level < limits[kind]! && 1 - least >= limits[kind + BEND]!;
+  const edge = limits[kind + EDGE]!;
+  if (answer && edge > 0) {
+    const far = (view[PIXELS]! * longest) / edge;
+    slack = Math.min(slack, Math.abs(far - away));
+    answer = far > away;
+  }
+  SLACK[0] = trusted(slack, away);
+  return answer;
 }
 
-/** Whether the limits for a triangle of this kind are all still to be reached. */
-function isCoarse(
-  view: Float64Array,
-  limits: Float64Array,
-  level: number,
-  kind: number,
-  longest: number,
-): boolean {
-  const away = T[3]!;
-  const edge = limits[kind + EDGE]!;
-  if (level >= limits[kind]! || 1 - T[7]! < limits[kind + BEND]!) {
-    SLACK[0] = trusted(SLACK[0]!, away);
-    return false;
-  }
-  if (edge > 0) {
-    const reach = (view[PIXELS]! * longest) / edge;
-    SLACK[0] = trusted(Math.min(SLACK[0]!, Math.abs(reach - away)), away);
-    return reach > away;
-  }
-  SLACK[0] = trusted(SLACK[0]!, away);
-  return true;
+/** Of a triangle; the squares of two of its edges are known. */
+function longestEdge(at: Float64Array, uu: number, vv: number): number {
+  const x = at[6]! - at[3]!;
+  const y = at[7]! - at[4]!;
+  const z = at[8]! - at[5]!;
+  return Math.sqrt(Math.max(uu, Math.max(vv, x * x + y * y + z * z)));
 }
 
 /** A slack that rounding cannot have made too large. */
