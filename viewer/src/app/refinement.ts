@@ -7,6 +7,7 @@ import type { Refinement as Wants } from "../format/cage";
 import type { Problem } from "../format/problem";
 import type { Cage } from "../refine/cage";
 import { deviceHints, refinedTriangles } from "../scene/device";
+import { AIM_MS } from "../scene/motionBudget";
 import { RefinedLayer } from "../scene/refinedLayer";
 import type { Part } from "../scene/stage";
 import { type Turn, turned } from "../scene/turn";
@@ -19,6 +20,9 @@ import { makeRefinementPanel } from "./refinementPanel";
 import type { Sheet } from "./sheet";
 import { INITIAL } from "./state";
 import { REFINEMENT_KEYS, WORDS } from "./words";
+
+/** A frame may take so much more than wanted: one that comes at the screen's own pace is in time. */
+const RATE_MARGIN = 1.1;
 
 export { openCage } from "../refine/cage";
 
@@ -85,6 +89,8 @@ export class RefinementControl {
     this.#layers.forEach((layer, i) => {
       layer.wants = this.#wantsOf(this.#cages[i]!.refinement);
     });
+    const rate = Math.max(0, ...this.#layers.map((layer) => layer.wants.rate));
+    stage.motion.aimMs = rate > 0 ? (1000 * RATE_MARGIN) / rate : AIM_MS;
     this.#inset.isShown = this.isInsetOn;
     stage.setInset(this.isInsetOn ? this.#inset.place : null, state.insetTurn);
   }

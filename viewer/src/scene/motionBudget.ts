@@ -7,10 +7,11 @@
  * and just there a flight over the dragon drew 280,000 triangles, 400 ms of a software rasteriser's time.
  * A still picture is drawn once, so it may take its time; from what it took a first guess is made.
  */
-const AIM_MS = 25; // 40 frames a second: above a 60 Hz screen's 16.7, below its missed frame's 33.3
+/** 40 frames a second: above a 60 Hz screen's 16.7, below its missed frame's 33.3. */
+export const AIM_MS = 25;
 const FALL = 0.12; // with the median's delay of two frames, the most that does not overshoot (4/27)
-/** Far too slow, it hurries. */
-const HURRIED_MS = 2 * AIM_MS;
+/** So many times too slow, it hurries. */
+const HURRIED = 2;
 const HURRIED_FALL = 0.4;
 const RISE = 0.03; // a slow frame is seen at once, some detail less in motion is not
 /** Fewer do not help: they take a software rasteriser 11 ms, while the pixels of a full page take it 60. */
@@ -23,6 +24,8 @@ const FEWEST_FRAMES = 3;
 const STEP = 1.25;
 
 export class MotionBudget {
+  /** What a frame may take. */
+  aimMs = AIM_MS;
   #allowed = Number.POSITIVE_INFINITY;
   #inForce = Number.POSITIVE_INFINITY;
   #recent: { milliseconds: number; triangles: number }[] = [];
@@ -41,7 +44,7 @@ export class MotionBudget {
     const median = times[times.length >> 1]!;
     const drawn = Math.max(...this.#recent.map((frame) => frame.triangles));
     if (isMoving) this.#follow(median, drawn);
-    else if (median > AIM_MS) this.#allowed = Math.min(this.#allowed, (drawn * AIM_MS) / median);
+    else if (median > this.aimMs) this.#allowed = Math.min(this.#allowed, (drawn * this.aimMs) / median);
     this.#allowed = Math.max(this.#allowed, LEAST_TRIANGLES);
     const change = this.#allowed / this.#inForce;
     if (!(change > 1 / STEP && change < STEP)) this.#inForce = this.#allowed;
@@ -53,11 +56,12 @@ export class MotionBudget {
   }
 
   #follow(median: number, drawn: number): void {
-    if (median > AIM_MS) {
-      const fall = median > HURRIED_MS ? HURRIED_FALL : FALL;
-      this.#allowed = Math.min(this.#allowed, drawn) * (AIM_MS / median) ** fall;
+    const { aimMs } = this;
+    if (median > aimMs) {
+      const fall = median > HURRIED * aimMs ? HURRIED_FALL : FALL;
+      this.#allowed = Math.min(this.#allowed, drawn) * (aimMs / median) ** fall;
     } else if (drawn > this.#allowed / 2) {
-      this.#allowed *= (AIM_MS / median) ** RISE; // what was not used up was not tried
+      this.#allowed *= (aimMs / median) ** RISE; // what was not used up was not tried
     }
   }
 }

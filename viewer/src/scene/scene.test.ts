@@ -1,11 +1,14 @@
 import { readFileSync } from "node:fs";
+import { type LineSegments, PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { defaultBudgets } from "./device";
 import { Fade } from "./fade";
 import { boxOf, frameOf, fromFrame, SCENE_RADIUS, toFrame } from "./frame";
 import { FrameClock } from "./frameClock";
+import { Inset } from "./inset";
 import { LEAST_TRIANGLES, MotionBudget } from "./motionBudget";
 import { decode, encode, type Rgb, shade, shadeFast } from "./shading";
+import { turned } from "./turn";
 
 describe("shading", () => {
   const golden = JSON.parse(
@@ -118,6 +121,17 @@ describe("motion budget", () => {
     }
   });
 
+  it("goes by another time where another rate is wanted", () => {
+    const budget = new MotionBudget();
+    budget.aimMs = 60;
+    run(budget, 10, 100, 60);
+    for (let i = 0; i < 20; i++) {
+      const milliseconds = 10 + (run(budget, 10, 100, 5) * 100) / 1e6;
+      expect(milliseconds).toBeGreaterThan(45);
+      expect(milliseconds).toBeLessThan(70);
+    }
+  });
+
   it("is there in a dozen frames where frames take half a second", () => {
     const budget = new MotionBudget();
     expect(10 + (run(budget, 10, 500, 16) * 500) / 1e6).toBeLessThan(50);
@@ -164,6 +178,8 @@ describe("frame clock", () => {
     expect(clock.begin(60_000)).toBeNull();
     expect(clock.elapsed).toBe(16);
     expect(clock.times).toEqual([40, 500]);
+    clock.end(60_012);
+    expect(clock.spent).toBe(12);
   });
 
   it("takes the camera for moving until a moment after it stopped", () => {
@@ -176,6 +192,41 @@ describe("frame clock", () => {
     expect(clock.isMoving).toBe(true);
     clock.begin(1200);
     expect(clock.isMoving).toBe(false);
+  });
+});
+
+describe("a picture from elsewhere", () => {
+  it("turns round without end, and up and down until straight above and below", () => {
+    expect(turned([150, 35], 60, 0)).toEqual([-150, 35]);
+    expect(turned([-170, 0], -40, 0)).toEqual([150, 0]);
+    expect(turned([0, 35], 0, 400)).toEqual([0, 89]);
+    expect(turned([0, 35], 720, -400)).toEqual([0, -89]);
+  });
+
+  it("shows all of the scene from every side, and the camera's frustum as far as it looks", () => {
+    const inset = new Inset();
+    inset.place = { left: 0, top: 0, width: 200, height: 150 };
+    const main = new PerspectiveCamera(60, 1, 1, 1e4);
+    main.position.set(0, 0, 2000);
+    main.updateMatrixWorld();
+    for (const turn of [
+      [0, 0],
+      [150, 35],
+      [-90, 89],
+    ] as const) {
+      inset.turn = turn;
+      inset.follow(main, 1000);
+      for (let axis = 0; axis < 3; axis++) {
+        const end = new Vector3().setComponent(axis, 577).project(inset.camera);
+        expect(Math.max(Math.abs(end.x), Math.abs(end.y), Math.abs(end.z))).toBeLessThan(1);
+      }
+    }
+    const lines = (inset.frustum.children[0] as LineSegments).geometry.getAttribute("position");
+    const tan = 1000 * Math.tan(Math.PI / 6);
+    expect([lines.getX(0), lines.getY(0), lines.getZ(0)]).toEqual([0, 0, 2000]);
+    expect(lines.getX(1)).toBeCloseTo(-tan, 3);
+    expect(lines.getY(1)).toBeCloseTo(-tan, 3);
+    expect(lines.getZ(1)).toBeCloseTo(1000, 3);
   });
 });
 

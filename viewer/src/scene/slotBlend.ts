@@ -3,8 +3,9 @@
  * were drawn, in 150 ms; normals with them.
  *
  * Each vertex has the moment that its blend began, and the vertex shader does the rest, so an update uploads what
- * changed once, and frames between updates upload nothing. The blend is even in time: with an ease in and out a vertex that
- * each message moves anew, 60 times a second, would never get away from where it is.
+ * changed once, and frames between updates upload nothing. (Mixed by the page, a turn of a degree a frame at 54,000
+ * triangles has 12,000 of 27,000 vertices on their way: 0.5 ms and 0.6 MB more for every frame.) The blend is even in
+ * time: with an ease in and out a vertex that each message moves anew, 60 times a second, would hardly leave.
  */
 import type { SlotBuffers, SlotChanges } from "../format/wire";
 import { SlotNormals } from "./slotNormals";
