@@ -87,6 +87,14 @@ def test_nothing_happens_while_nothing_changes(open_page):
     assert stats(page)["refinement"]["updates"] == before
 
 
+def test_a_budget_of_the_file_is_kept_by_longer_edges(open_page, site, tmp_path, viewer_folder):
+    free = stats(open_page(PLAIN))["refinement"]["triangles"]
+    site.files.update(published(tmp_path, viewer_folder, Refinement("sqrt3", CRITERIA, budget=free // 2)))
+    shown = stats(open_page(PLAIN))["refinement"]
+    assert free // 4 < shown["triangles"] <= free // 2
+    assert shown["threshold"] > 1
+
+
 def test_a_scheme_that_needs_a_server_is_told(open_page, site, tmp_path, viewer_folder):
     site.files.update(published(tmp_path, viewer_folder, Refinement("loop", CRITERIA)))
     page = open_page(is_ready=False, errors_wanted=True)
