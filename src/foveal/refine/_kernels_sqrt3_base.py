@@ -6,6 +6,7 @@ import math
 from foveal.base.jit import lean
 
 from ._kernels_sqrt3_layout import BORDER, CORNER, INSIDE
+from ._kernels_turn import turn
 
 
 @lean
@@ -30,7 +31,7 @@ def base_points(positions, starts, ring, is_border, is_corner, vertices, normals
                 vertices[v].third[axis] = positions[p, axis] + positions[q, axis] - 2.0 * positions[v, axis]
         else:
             vertices[v].kind = INSIDE
-            share = (4.0 - 2.0 * math.cos(2.0 * math.pi / n)) / 9.0
+            share = (4.0 - 2.0 * turn(1, n)[0]) / 9.0
             shrinks[v] = 2.0 / 3.0 - share
             for axis in range(3):
                 total = 0.0
@@ -55,7 +56,7 @@ def base_points(positions, starts, ring, is_border, is_corner, vertices, normals
             x, y, z = sx, sy, sz
         else:
             for i in range(n):
-                c, s = math.cos(2.0 * math.pi * i / n), math.sin(2.0 * math.pi * i / n)
+                c, s = turn(i, n)
                 r = ring[begin + i]
                 sx, sy, sz = sx + c * positions[r, 0], sy + c * positions[r, 1], sz + c * positions[r, 2]
                 tx, ty, tz = tx + s * positions[r, 0], ty + s * positions[r, 1], tz + s * positions[r, 2]

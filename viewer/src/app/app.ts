@@ -1,10 +1,10 @@
 /** The page: scene and tools put together. */
 import type { Problem } from "../format/problem";
+import type { Cage } from "../refine/cage";
 import { defaultBudgets, deviceHints } from "../scene/device";
 import { UP } from "../scene/frame";
 import { type Part, Stage } from "../scene/stage";
 import type { Asset } from "../stream/asset";
-import type { Cage } from "../stream/cage";
 import type { DecoderPool } from "../stream/pool";
 import { Streamer } from "../stream/streamer";
 import { Address } from "./address";

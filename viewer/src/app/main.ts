@@ -1,8 +1,8 @@
 /** Start: fetch the scene, show it, and say so when that cannot be done. */
 import { CAGE } from "../format/cage";
 import { sentenceOf } from "../format/problem";
+import type { Cage } from "../refine/cage";
 import { type Asset, assetOf } from "../stream/asset";
-import type { Cage } from "../stream/cage";
 import { openFile } from "../stream/file";
 import { DecoderPool } from "../stream/pool";
 import type { FovealApi } from "./api";

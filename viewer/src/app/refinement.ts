@@ -5,12 +5,12 @@
  */
 import type { Refinement as Wants } from "../format/cage";
 import type { Problem } from "../format/problem";
+import type { Cage } from "../refine/cage";
 import { deviceHints, refinedTriangles } from "../scene/device";
 import { AIM_MS } from "../scene/motionBudget";
 import { RefinedLayer } from "../scene/refinedLayer";
 import type { Part } from "../scene/stage";
 import { type Turn, turned } from "../scene/turn";
-import type { Cage } from "../stream/cage";
 import type { App } from "./app";
 import { addKeys } from "./dialogs";
 import { InsetFrame } from "./insetFrame";
@@ -24,7 +24,7 @@ import { REFINEMENT_KEYS, WORDS } from "./words";
 /** A frame may take so much more than wanted: one that comes at the screen's own pace is in time. */
 const RATE_MARGIN = 1.1;
 
-export { openCage } from "../stream/cage";
+export { openCage } from "../refine/cage";
 
 export class RefinementControl {
   readonly #layers: RefinedLayer[] = [];

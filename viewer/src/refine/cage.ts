@@ -1,8 +1,8 @@
 /** An opened control mesh: what its file says, and who refines it. */
 import { type CageInfo, parseCage, type Refinement, refinementOf } from "../format/cage";
-import type { OpenFile } from "./file";
+import type { OpenFile } from "../stream/file";
+import type { RefinementSource } from "../stream/refinement";
 import { openRefinement } from "./openRefinement";
-import type { RefinementSource } from "./refinement";
 
 export interface Cage {
   readonly file: OpenFile;
@@ -24,6 +24,6 @@ export async function openCage(
 ): Promise<Cage> {
   const info = parseCage(file.container.header, file.source.name);
   const refinement = refinementOf(layer, "scene.json", info.refinement);
-  const source = await openRefinement(file, refinement.scheme, live);
+  const source = await openRefinement(file, info, refinement.scheme, live);
   return { file, info, refinement, source };
 }

@@ -1,0 +1,110 @@
+"""A published control mesh is refined where the page looks, by the page: static files, no server of ours."""
+
+import math
+
+import pytest
+
+from e2e.page import idle, picture, stats
+from e2e.static_server import StaticServer
+from foveal.mesh.shapes import bumpy_sphere
+from foveal.refine import Criteria, Region, Sqrt3
+from foveal.scene import Scene
+from foveal.scene.cage_file import write_cage
+from foveal.scene.publish import publish
+from foveal.scene.refinement import Refinement
+from foveal.scene.scene import Layer
+from foveal.view.camera import Camera
+
+WIDTH, HEIGHT = 640, 480
+CRITERIA = Criteria(Region(5, 12.0), Region(6, 6.0), Region(0))
+FRONT = {"position": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
+NEAR = {"position": [0.3, 0.2, 1.6], "target": [0.1, 0.1, 0.9], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
+PLAIN = "#v=1&n=0"
+
+
+def published(folder, viewer, refinement):
+    """The files of a site with a ball of 320 triangles."""
+    write_cage(bumpy_sphere(2), folder / "ball.fov", refinement=refinement)
+    scene = Scene("A ball from few triangles", (Layer("ball", folder / "ball.fov", refinement=refinement),))
+    site = publish(scene, folder / "site", viewer=viewer)
+    return {p.relative_to(site).as_posix(): p for p in site.rglob("*") if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory, viewer_folder):
+    return published(tmp_path_factory.mktemp("site"), viewer_folder, Refinement("sqrt3", CRITERIA))
+
+
+@pytest.fixture
+def site(files):
+    """In the place of the static files of the other tests."""
+    server = StaticServer(dict(files))
+    yield server
+    server.close()
+
+
+def go(page, camera):
+    page.evaluate("camera => foveal.setCamera(camera)", camera)
+    idle(page)
+    return stats(page)
+
+
+def test_the_page_makes_the_mesh_that_its_camera_asks_for(open_page):
+    page = open_page(PLAIN)
+    sockets = []
+    page.on("websocket", lambda socket: sockets.append(socket.url))
+    refined = Sqrt3(bumpy_sphere(2))
+    for camera in (FRONT, NEAR, FRONT):
+        shown = go(page, camera)
+        same = Camera.of(
+            camera["position"],
+            camera["target"],
+            up=camera["up"],
+            field_of_view=math.radians(camera["fieldOfViewDegrees"]),
+            width=WIDTH,
+            height=HEIGHT,
+            near=1e-3,
+        )
+        wanted = refined.update(same, criteria=CRITERIA).faces
+        # the page's own frame rounds the last digits of the camera, and decides by them now and then
+        assert shown["refinement"]["triangles"] == pytest.approx(wanted, rel=2e-3)
+        assert shown["triangles"] == shown["refinement"]["triangles"]
+        assert shown["refinement"]["threshold"] == 1
+    assert sockets == []
+
+
+def test_what_is_shown_has_no_hole(open_page):
+    page = open_page(PLAIN + "&b=black")
+    go(page, FRONT)
+    middle = picture(page)[HEIGHT // 2 - 80 : HEIGHT // 2 + 80, WIDTH // 2 - 80 : WIDTH // 2 + 80]
+    assert (middle.max(axis=2) > 20).all()
+
+
+def test_nothing_happens_while_nothing_changes(open_page):
+    page = open_page(PLAIN)
+    before = stats(page)["refinement"]["updates"]
+    page.wait_for_timeout(400)
+    assert stats(page)["refinement"]["updates"] == before
+
+
+def test_a_budget_of_the_file_is_kept_by_longer_edges(open_page, site, tmp_path, viewer_folder):
+    free = stats(open_page(PLAIN))["refinement"]["triangles"]
+    site.files.update(published(tmp_path, viewer_folder, Refinement("sqrt3", CRITERIA, budget=free // 2)))
+    shown = stats(open_page(PLAIN))["refinement"]
+    assert free // 4 < shown["triangles"] <= free // 2
+    assert shown["threshold"] > 1
+
+
+def test_a_scheme_that_needs_a_server_is_told(open_page, site, tmp_path, viewer_folder):
+    site.files.update(published(tmp_path, viewer_folder, Refinement("loop", CRITERIA)))
+    page = open_page(is_ready=False, errors_wanted=True)
+    page.wait_for_function("document.body.innerText.includes('Open it with: foveal view')")
+
+
+def test_a_damaged_control_mesh_is_told(open_page, site):
+    name = next(name for name in site.files if name.endswith(".fov"))
+    data = bytearray(site.files[name].read_bytes())
+    data[-8] ^= 1
+    site.files[name] = bytes(data)
+    page = open_page(is_ready=False, errors_wanted=True)
+    page.wait_for_function("document.body.innerText.includes('damaged')")
