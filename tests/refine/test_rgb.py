@@ -206,6 +206,22 @@ def test_work_spread_over_updates_ends_in_the_same_mesh():
     assert_same(refined.mesh(), rgb(mesh, around(mesh), criteria=criteria))
 
 
+def test_one_can_come_as_near_as_doubles_go():
+    mesh = icosphere(0)
+    refined = Rgb(mesh)
+    refined.update(around(mesh), criteria=everywhere(5))
+    points = refined.mesh(positions="limit").positions
+    top = points[points[:, 1].argmax()]  # well beneath the control mesh: an eye near it is inside that
+    criteria, highest = Criteria(Region(30, 40.0), Region(30, 20.0), Region(0)), []
+    for near in (0.1, 1e-3, 1e-5):
+        camera = Camera.of(top + [0, near, 0], top, up=(0, 0, 1))
+        refined.update(camera, criteria=criteria)
+        assert_same(refined.mesh(), rgb(mesh, camera, criteria=criteria))
+        assert_surface(refined.mesh(), mesh)
+        highest.append(refined.slots().levels.max())
+    assert highest[0] < highest[1] < highest[2] >= 18
+
+
 def test_slots_stay_where_they_are():
     mesh = bumpy_sphere(2)
     refined = Rgb(mesh)

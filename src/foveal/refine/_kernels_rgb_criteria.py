@@ -80,9 +80,11 @@ def wants_edge(net, a, b, level, view, limits):
     n, m = net.vertices[a].normal, net.vertices[b].normal
     one, two = n[0] * dx + n[1] * dy + n[2] * dz, m[0] * dx + m[1] * dy + m[2] * dz
     spread = spread_of(net, a, b, level)
-    front, back = min(one, two) - spread * far, -max(one, two) - spread * far
+    # The surface is that much off the edge, too: an eye beneath a coarse edge may yet be above the surface.
+    margin = spread * (far + length)
+    front, back = min(one, two) - margin, -max(one, two) - margin
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
-    # A facing changes as quickly as the eye moves at most, its distance times the spread that much quicker.
+    # A facing changes as quickly as the eye moves at most, the margin as quickly as the spread says.
     slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
     # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
     bend = max(1.0 - (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), 0.125 * spread * spread)

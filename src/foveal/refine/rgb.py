@@ -4,11 +4,11 @@ Based on: E. Puppo. Selectively refinable subdivision meshes. Eurographics Sympo
 2006. Where ours is another way:
 
 * The mesh is a set of split edges of the infinite Loop hierarchy, closed under what splits require; the
-  diagonal of a triangle with two split edges ends at the lower address. As published it depends on the order.
-* Points are closed forms of where a vertex was born and of its limit, and what a stencil takes is computed by
-  address, not split into the mesh for a time. That would be 2 % more splits, or 7 % for silhouettes alone
-  (medians of five views of two models, 80,000 and 50,000 triangles), each merged again: little, but they
-  would depend on the order, pass the budget on the way, and be needed anew with every view.
+  diagonal of a triangle with two split edges ends at the lower address. As published the order decides.
+* Points are closed forms of where a vertex was born and of its limit, and what a stencil takes is computed
+  by address, not split into the mesh for a time. That would be 2 % more splits, or 7 % for silhouettes alone
+  (medians of five views of two models, 80,000 and 50,000 triangles), each to be merged again: little, but
+  they would depend on the order, pass the budget on the way, and be needed anew with every view.
 * As the set is unique, Qr and Qc need no priorities: a queue holds the faces whose edges are to be asked, and
   vertices that are not needed are taken out finest first. A budget chooses the threshold.
 """
