@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from foveal.refine import _kernels_extract as kernels
 from foveal.refine.cage import Cage
+from foveal.refine.criteria import view_of
 from foveal.refine.extract import front_faces, frustum_faces, silhouette_faces
 from foveal.view.camera import Camera
 from refine import naive_filter as naive
@@ -49,3 +51,16 @@ def test_where_no_face_turns_away_there_is_no_silhouette():
         )
         == 0
     )
+
+
+def test_what_is_inherited_is_not_tested_again():
+    cage = Cage.of(SURFACES["icosphere"]())
+    p, faces = cage.positions, cage.faces
+    view = view_of(Camera.of([0, 0, 3], [0, 0, 9]))  # it looks away: nothing is in its frustum
+    flags = np.zeros(len(faces), np.uint8)
+    flags[3], flags[5] = kernels.INSIDE, kernels.KNOWN
+    among = np.arange(len(faces), dtype=np.int32)
+    assert among[: kernels.keep_inside(p, faces, flags, view, among)].tolist() == [3]
+    flags[:] = kernels.KNOWN
+    kernels.face_the_eye(p, faces, flags, view, np.arange(len(faces), dtype=np.int32))
+    assert not (flags & kernels.FRONT).any()

@@ -47,7 +47,7 @@ def frustum_faces(
     >>> from foveal.mesh.shapes import grid_patch
     >>> mesh, camera = grid_patch(8), Camera.of([0.1, 0.1, 0.2], [0.1, 0.1, 0])
     >>> len(frustum_faces(mesh.positions, mesh.faces, camera)), len(mesh.faces)
-    (14, 128)
+    (8, 128)
     """
     found = _all_or(among, len(faces))
     flags = np.zeros(len(faces), np.uint8)
@@ -74,7 +74,8 @@ def front_faces(
     found = _all_or(among, len(faces))
     flags = np.zeros(len(faces), np.uint8)
     kernels.face_the_eye(positions, faces, flags, view_of(camera), found)
-    return found[(flags[found] & kernels.FRONT) != 0]
+    is_front: NDArray[np.bool_] = (flags[found] & kernels.FRONT) != 0
+    return found[is_front]
 
 
 def silhouette_faces(

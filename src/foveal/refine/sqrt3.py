@@ -6,6 +6,7 @@ Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,13 @@ from .criteria import MAX_LEVEL, Criteria, view_of
 from .net import Net
 from .slots import Placing, Slots
 
-__all__ = ["Sqrt3", "Update", "sqrt3"]
+if TYPE_CHECKING:
+    from .filter import Sqrt3Filter
+
+__all__ = ["Mode", "Sqrt3", "Update", "sqrt3"]
+
+Mode = Literal["exact", "filter"]
+"""Uniform subdivision's points wherever they are shown, or the paper's own way; see `Sqrt3`."""
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
 _FACES, _VERTICES = 1 << 16, 1 << 15
@@ -63,6 +70,8 @@ class Sqrt3:
     ----------
     mesh : TriMesh
         An oriented surface, open or closed.
+    mode : "exact" or "filter"
+        As said above, or a `Sqrt3Filter` instead: the paper's own way, to compare with.
     name : str
         What errors call it.
 
@@ -81,7 +90,19 @@ class Sqrt3:
     True
     """
 
-    def __init__(self, mesh: TriMesh, /, *, name: str = "mesh") -> None:
+    def __new__(  # type: ignore[misc] # mypy knows no class that gives another; it takes this for a Sqrt3
+        cls, mesh: TriMesh, /, *, mode: Mode = "exact", name: str = "mesh"
+    ) -> "Self | Sqrt3Filter":
+        """A `Sqrt3Filter` where the mode is "filter"."""
+        if mode == "filter":
+            from .filter import Sqrt3Filter
+
+            return Sqrt3Filter(mesh, name=name)
+        if mode != "exact":
+            raise ValueError(f"mode must be exact or filter, got {mode!r}")
+        return super().__new__(cls)
+
+    def __init__(self, mesh: TriMesh, /, *, mode: Mode = "exact", name: str = "mesh") -> None:
         cage = Cage.of(mesh, name=name)
         count, faces = len(cage.positions), len(cage.faces)
         net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
@@ -186,7 +207,9 @@ class Sqrt3:
         )
 
 
-def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None) -> TriMesh:
+def sqrt3(
+    mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None, mode: Mode = "exact"
+) -> TriMesh:
     """A mesh refined for one view; see `Sqrt3`, which follows a camera.
 
     Examples
@@ -198,6 +221,6 @@ def sqrt3(mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None)
     >>> len(sqrt3(tetrahedron(), Camera.of([0, 0, 9], [0, 0, 0]), criteria=everywhere).faces)
     36
     """
-    refined = Sqrt3(mesh)
+    refined = Sqrt3(mesh, mode=mode)
     refined.update(camera, criteria=criteria)
     return refined.mesh()
