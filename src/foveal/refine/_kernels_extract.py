@@ -17,8 +17,8 @@ from ._kernels_criteria import EYE, PLANES
 NONE = -1
 
 #: Flags of faces: wholly in the frustum; faces the eye; whether it does is known by inheritance; is to be
-#: refined as front or back; lies along the silhouette; may have a silhouette edge; waits for its swap.
-INSIDE, FRONT, KNOWN, AREA, STRIP, SEED, SWAP = 1, 2, 4, 8, 16, 32, 64
+#: refined as front or back; lies along the silhouette; waits for its swap; was tested for facing the eye.
+INSIDE, FRONT, KNOWN, AREA, STRIP, SWAP, TESTED = 1, 2, 4, 8, 16, 32, 64
 
 OUTSIDE, PARTLY, WHOLLY = 0, 1, 2
 
@@ -97,27 +97,38 @@ def face_the_eye(positions, corners, flags, view, faces):
     for i in range(len(faces)):
         f = np.int64(faces[i])
         if not flags[f] & KNOWN:
-            flags[f] &= ~FRONT & 0xFF
+            flags[f] = (flags[f] & ~FRONT & 0xFF) | TESTED
             if is_front(positions, corners, f, view):
                 flags[f] |= FRONT
 
 
 @lean
-def strips(positions, corners, beside, flags, view, faces, found):
+def strips(positions, corners, beside, flags, marks, view, seeds, found):
     """found: the faces around the ends of silhouette edges; each is set STRIP. Returns how many.
 
-    A silhouette edge is between one of `faces` that is a SEED and FRONT, and a face that is not front.
+    A silhouette edge is between one of `seeds` that is FRONT and a face that is not front. `marks`, of
+    vertices, are 0 and will be again: they are set where all faces around are found.
     """
     count = 0
-    for i in range(len(faces)):
-        f = np.int64(faces[i])
-        if flags[f] & (SEED | FRONT) != SEED | FRONT:
+    for i in range(len(seeds)):
+        f = np.int64(seeds[i])
+        if not flags[f] & FRONT:
             continue
         for k in range(3):
             n = np.int64(beside[f, k])
-            if n != NONE and not is_front(positions, corners, n, view):
-                count = gather_around(corners, beside, flags, f, k, found, count)
-                count = gather_around(corners, beside, flags, f, (k + 1) % 3, found, count)
+            if n == NONE:
+                continue
+            # Most neighbours were tested with f: asked again, silhouettes took 1.3 times as long.
+            is_tested = flags[n] & TESTED
+            if not (flags[n] & FRONT if is_tested else is_front(positions, corners, n, view)):
+                for j in (k, (k + 1) % 3):
+                    v = corners[f, j]
+                    if not marks[v]:
+                        marks[v] = 1
+                        count = gather_around(corners, beside, flags, f, j, found, count)
+    for i in range(count):
+        for k in range(3):
+            marks[corners[found[i], k]] = 0
     return count
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_extract import AREA, FRONT, INSIDE, KNOWN, NONE, SEED, STRIP, SWAP, corner_of
+from ._kernels_extract import AREA, FRONT, INSIDE, KNOWN, NONE, STRIP, SWAP, corner_of
 
 #: Places in `counts`.
 FACES, VERTICES, SPLITS, MOVES, SWAPS = 0, 1, 2, 3, 4
@@ -38,15 +38,10 @@ def relink(net, n, u, f):
 def inherited(flags):
     """The flags of a face's thirds.
 
-    What is wholly in the frustum stays there; so does the facing of what is off the silhouette. Silhouettes
-    are looked for only where there was one.
+    What is wholly in the frustum stays there; so does the facing of what is off the silhouette.
     """
     child = flags & (INSIDE | AREA)
-    if flags & STRIP:
-        child |= SEED
-    else:
-        child |= KNOWN | (flags & FRONT)
-    return child
+    return child if flags & STRIP else child | KNOWN | (flags & FRONT)
 
 
 @lean
@@ -182,8 +177,8 @@ def mix_flags(net, f, n):
     known = one & two & (INSIDE | KNOWN)
     if (one ^ two) & FRONT:
         known &= ~KNOWN & 0xFF
-    net.flags[f] = (one & (AREA | SEED | FRONT)) | known
-    net.flags[n] = (two & (AREA | SEED | FRONT)) | known
+    net.flags[f] = (one & (AREA | FRONT)) | known
+    net.flags[n] = (two & (AREA | FRONT)) | known
 
 
 @lean

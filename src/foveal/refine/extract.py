@@ -114,10 +114,10 @@ def silhouette_faces(
     """
     seeds = _all_or(among, len(faces))
     flags = np.zeros(len(faces), np.uint8)
-    flags[seeds] = kernels.SEED
+    marks = np.zeros(len(positions), np.uint8)
     view, found = view_of(camera), np.empty(len(faces), np.int32)
     kernels.face_the_eye(positions, faces, flags, view, seeds)
-    return found[: kernels.strips(positions, faces, beside, flags, view, seeds, found)].copy()
+    return found[: kernels.strips(positions, faces, beside, flags, marks, view, seeds, found)].copy()
 
 
 def _all_or(among: NDArray[np.int32] | None, count: int) -> NDArray[np.int32]:

@@ -16,6 +16,7 @@ from . import _kernels_extract as extract
 from . import _kernels_filter_relax as relax
 from . import _kernels_filter_steps as steps
 from . import _kernels_filter_undo as undo
+from ._kernels_criteria import BACK, FRONT, ITERATIONS, SILHOUETTE
 from ._kernels_filter import FACES, MOVES, SPLITS, SWAPS, VERTICES
 from .cage import Cage
 from .criteria import Criteria, view_of
@@ -84,37 +85,52 @@ class Sqrt3Filter:
         self.rewind()
         most = max(budget if budget is not None else np.iinfo(np.int32).max, 0)
         view, limits = view_of(camera), (criteria or Criteria()).limits()
-        candidates = np.arange(self._net.counts[FACES], dtype=np.int32)
-        self._net.flags[: len(candidates)] = extract.AREA | extract.SEED
-        is_done = True
-        while is_done and len(candidates) > 0:
-            chosen = self._choose(candidates, view, limits)
+        thirds = np.arange(self._net.counts[FACES], dtype=np.int32)
+        self._net.flags[: len(thirds)] = extract.AREA
+        silhouettes, is_done = len(thirds) // 3 + 1, True
+        while is_done:
+            chosen, silhouettes = self._choose(thirds, 3 * silhouettes, view, limits)
             allowed = max((most - int(self._net.counts[FACES])) // 2, 0)
             is_done = len(chosen) <= allowed
             chosen = chosen[:allowed]
             if len(chosen) == 0:
                 break
-            candidates = self._iterate(chosen)
+            thirds = self._iterate(chosen)
         counts = self._net.counts
         return Update(int(counts[FACES]), int(counts[VERTICES]), int(counts[SPLITS]), undone, is_done)
 
     def _choose(
-        self, candidates: NDArray[np.int32], view: NDArray[np.float64], limits: NDArray[np.float64]
-    ) -> NDArray[np.int32]:
-        """The faces an iteration splits: silhouettes first; else by index."""
-        net = self._net
-        kept = extract.keep_inside(net.positions, net.corners, net.flags, view, candidates)
-        extract.face_the_eye(net.positions, net.corners, net.flags, view, candidates[:kept])
+        self,
+        candidates: NDArray[np.int32],
+        seeds: int,
+        view: NDArray[np.float64],
+        limits: NDArray[np.float64],
+    ) -> tuple[NDArray[np.int32], int]:
+        """The faces an iteration splits, by index but silhouettes first, and how many these are.
+
+        Silhouette edges are looked for at the first `seeds` of the candidates.
+        """
+        net, iteration = self._net, self.label // 3
+        # The last strips are the longest: to look for them in vain was half of all the search.
+        if iteration >= limits[SILHOUETTE, ITERATIONS]:
+            seeds = 0
+        if iteration >= max(limits[FRONT, ITERATIONS], limits[BACK, ITERATIONS]):
+            net.flags[candidates[seeds:]] = 0
+            candidates = candidates[:seeds]
+        parts = [
+            part[: extract.keep_inside(net.positions, net.corners, net.flags, view, part)]
+            for part in (candidates[:seeds], candidates[seeds:])
+        ]
+        candidates = np.concatenate(parts)
+        extract.face_the_eye(net.positions, net.corners, net.flags, view, candidates)
         chosen = np.empty(int(net.counts[FACES]), np.int32)
         strips = extract.strips(
-            net.positions, net.corners, net.beside, net.flags, view, candidates[:kept], chosen
+            net.positions, net.corners, net.beside, net.flags, net.marks, view, parts[0], chosen
         )
-        silhouettes, count = steps.choose(
-            net, candidates[:kept], strips, chosen, view, limits, self.label // 3
-        )
+        silhouettes, count = steps.choose(net, candidates, strips, chosen, view, limits, self.label // 3)
         chosen[:silhouettes].sort()
         chosen[silhouettes:count].sort()
-        return chosen[:count]
+        return chosen[:count], int(silhouettes)
 
     def _iterate(self, chosen: NDArray[np.int32]) -> NDArray[np.int32]:
         """Split, filter, swap; returns the thirds. Where vertices move is read before the split."""

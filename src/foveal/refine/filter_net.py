@@ -38,7 +38,7 @@ class FilterNet(NamedTuple):
     around : (V,) int32
         One of its faces; -1 where there is none.
     marks : (V,) uint8
-        Whether it is to be moved.
+        Set for a moment, while a search has met it.
     splits : (S,) int32
         2 face, + 1 where a border edge was cut in three.
     moved, before : (M,) int32, (M, 3) float64
