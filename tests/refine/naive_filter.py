@@ -103,7 +103,7 @@ def choose(positions, faces, parts, camera, criteria, iteration):
     flags = {}
     for i in chosen:
         whole, front = seen[i][2:] if i in seen else (False, None)
-        flags[i] = [i in area, i in fine, whole, None if i in fine else front]
+        flags[i] = [i in area, i in fine, whole, None if i in strip else front]
     return chosen, flags
 
 

@@ -17,8 +17,9 @@ from ._kernels_criteria import EYE, PLANES
 NONE = -1
 
 #: Flags of faces: wholly in the frustum; faces the eye; whether it does is known by inheritance; is to be
-#: refined as front or back; lies along the silhouette; waits for its swap; was tested for facing the eye.
-INSIDE, FRONT, KNOWN, AREA, STRIP, SWAP, TESTED = 1, 2, 4, 8, 16, 32, 64
+#: refined as front or back; lies along the silhouette; lies there but is fine enough for it; waits for its
+#: swap; was tested for facing the eye.
+INSIDE, FRONT, KNOWN, AREA, STRIP, FINE_STRIP, SWAP, TESTED = 1, 2, 4, 8, 16, 32, 64, 128
 
 OUTSIDE, PARTLY, WHOLLY = 0, 1, 2
 

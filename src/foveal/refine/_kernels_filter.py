@@ -12,7 +12,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_extract import AREA, FRONT, INSIDE, KNOWN, NONE, STRIP, SWAP, corner_of
+from ._kernels_extract import AREA, FINE_STRIP, FRONT, INSIDE, KNOWN, NONE, STRIP, SWAP, corner_of
 
 #: Places in `counts`.
 FACES, VERTICES, SPLITS, MOVES, SWAPS = 0, 1, 2, 3, 4
@@ -41,7 +41,7 @@ def inherited(flags):
     What is wholly in the frustum stays there; so does the facing of what is off the silhouette.
     """
     child = flags & (INSIDE | AREA)
-    return child if flags & STRIP else child | KNOWN | (flags & FRONT)
+    return child if flags & (STRIP | FINE_STRIP) else child | KNOWN | (flags & FRONT)
 
 
 @lean
