@@ -92,7 +92,8 @@ def choose(positions, faces, parts, camera, criteria, iteration):
         if may:
             front = is_front(positions, faces[i], camera) if front is None else front
             seen[i] = (is_area, is_seed, whole, front)
-    strip = silhouette(positions, faces, [i for i in seen if seen[i][1]], camera)
+    seeds = [i for i in seen if seen[i][1] and iteration < criteria.silhouette.iterations]
+    strip = silhouette(positions, faces, seeds, camera)
     fine = {i for i in strip if is_coarse(positions, faces, i, camera, criteria.silhouette, iteration)}
     area = []
     for i, (is_area, _, _, front) in seen.items():
@@ -103,7 +104,8 @@ def choose(positions, faces, parts, camera, criteria, iteration):
     flags = {}
     for i in chosen:
         whole, front = seen[i][2:] if i in seen else (False, None)
-        flags[i] = [i in area, i in fine, whole, None if i in strip else front]
+        is_off = i not in strip and (i in seeds or parts[i][3] is not None)
+        flags[i] = [i in area, i in fine, whole, front if is_off else None]
     return chosen, flags
 
 

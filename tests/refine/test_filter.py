@@ -85,7 +85,7 @@ def test_step_by_step_it_is_what_its_slow_twin_does(name, seed):
     rng = np.random.default_rng(seed)
     camera = around(mesh, rng.uniform(0, 6), rng.uniform(-0.5, 0.5), rng.choice([0.4, 0.9]))
     front = Region(3, float(rng.choice([0.0, 80.0])), float(rng.choice([0.0, 0.05])))
-    silhouette = Region(4, float(rng.choice([40.0, 150.0])))
+    silhouette = Region(int(rng.choice([1, 4])), float(rng.choice([40.0, 150.0])))
     criteria = Criteria(front, silhouette, Region(int(rng.integers(0, 4)), 100.0))
     budget = int(rng.choice([len(mesh.faces) + 7, 300, 2000]))
     refined = Sqrt3Filter(mesh)

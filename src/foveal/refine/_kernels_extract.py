@@ -16,10 +16,9 @@ from ._kernels_criteria import EYE, PLANES
 
 NONE = -1
 
-#: Flags of faces: wholly in the frustum; faces the eye; whether it does is known by inheritance; is to be
-#: refined as front or back; lies along the silhouette; lies there but is fine enough for it; waits for its
-#: swap; was tested for facing the eye.
-INSIDE, FRONT, KNOWN, AREA, STRIP, FINE_STRIP, SWAP, TESTED = 1, 2, 4, 8, 16, 32, 64, 128
+#: Flags of faces: wholly in the frustum; faces the eye; off the silhouette, so that all its parts are to face
+#: alike; to be refined as front or back; along the silhouette; waiting for its swap; tested for facing.
+INSIDE, FRONT, KNOWN, AREA, STRIP, SWAP, TESTED = 1, 2, 4, 8, 16, 32, 64
 
 OUTSIDE, PARTLY, WHOLLY = 0, 1, 2
 
@@ -107,8 +106,9 @@ def face_the_eye(positions, corners, flags, view, faces):
 def strips(positions, corners, beside, flags, marks, view, seeds, found):
     """found: the faces around the ends of silhouette edges; each is set STRIP. Returns how many.
 
-    A silhouette edge is between one of `seeds` that is FRONT and a face that is not front. `marks`, of
-    vertices, are 0 and will be again: they are set where all faces around are found.
+    A silhouette edge is between one of `seeds` that is FRONT and a face that is not front; seeds that are not
+    found are off the silhouette: KNOWN. `marks`, of vertices, are 0 and will be again: they are set where all
+    faces around are found.
     """
     count = 0
     for i in range(len(seeds)):
@@ -130,6 +130,9 @@ def strips(positions, corners, beside, flags, marks, view, seeds, found):
     for i in range(count):
         for k in range(3):
             marks[corners[found[i], k]] = 0
+    for i in range(len(seeds)):
+        if not flags[seeds[i]] & STRIP:
+            flags[seeds[i]] |= KNOWN
     return count
 
 
@@ -141,7 +144,7 @@ def gather_around(corners, beside, flags, f, k, found, count):
         g, j = f, k
         while True:
             if not flags[g] & STRIP:
-                flags[g] |= STRIP
+                flags[g] = (flags[g] & ~KNOWN & 0xFF) | STRIP
                 found[count] = g
                 count += 1
             g = np.int64(beside[g, j if is_back else (j + 2) % 3])

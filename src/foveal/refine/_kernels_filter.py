@@ -12,7 +12,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_extract import AREA, FINE_STRIP, FRONT, INSIDE, KNOWN, NONE, STRIP, SWAP, corner_of
+from ._kernels_extract import AREA, FRONT, INSIDE, KNOWN, NONE, SWAP, corner_of
 
 #: Places in `counts`.
 FACES, VERTICES, SPLITS, MOVES, SWAPS = 0, 1, 2, 3, 4
@@ -35,16 +35,6 @@ def relink(net, n, u, f):
 
 
 @lean
-def inherited(flags):
-    """The flags of a face's thirds.
-
-    What is wholly in the frustum stays there; so does the facing of what is off the silhouette.
-    """
-    child = flags & (INSIDE | AREA)
-    return child if flags & (STRIP | FINE_STRIP) else child | KNOWN | (flags & FRONT)
-
-
-@lean
 def split(net, f, is_odd, old):
     """Split face f in three at its middle, or on odd iterations at its border edge.
 
@@ -58,7 +48,7 @@ def split(net, f, is_odd, old):
     is_cut = is_odd and borders == 1  # in uniform subdivision no face has more on an odd iteration
     net.splits[net.counts[SPLITS]] = 2 * f + (1 if is_cut else 0)
     net.counts[SPLITS] += 1
-    flags, level = inherited(net.flags[f]), net.levels[f] + 1
+    flags, level = net.flags[f] & (INSIDE | AREA | KNOWN | FRONT), net.levels[f] + 1
     g, h = net.counts[FACES], net.counts[FACES] + 1
     net.flags[f] = flags | (0 if is_cut else SWAP)
     net.flags[g] = net.flags[h] = flags | SWAP

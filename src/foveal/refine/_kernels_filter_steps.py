@@ -9,7 +9,7 @@ from foveal.base.jit import lean
 
 from . import _kernels_extract as known
 from ._kernels_criteria import BACK, BEND, EDGE, EYE, FRONT, ITERATIONS, PIXELS, SILHOUETTE, THIRD
-from ._kernels_extract import AREA, FINE_STRIP, NONE, STRIP, SWAP, normal
+from ._kernels_extract import AREA, NONE, STRIP, SWAP, normal
 from ._kernels_filter import FACES, VERTICES, split, swap
 
 
@@ -67,7 +67,7 @@ def choose(net, candidates, strips, chosen, view, limits, iteration):
             chosen[count] = f
             count += 1
         else:
-            net.flags[f] = (net.flags[f] & ~STRIP & 0xFF) | FINE_STRIP
+            net.flags[f] &= ~STRIP & 0xFF
     silhouettes = count
     for i in range(len(candidates)):
         f = np.int64(candidates[i])
