@@ -87,15 +87,15 @@ class Sqrt3Filter:
         view, limits = view_of(camera), (criteria or Criteria()).limits()
         thirds = np.arange(self._net.counts[FACES], dtype=np.int32)
         self._net.flags[: len(thirds)] = extract.AREA
-        silhouettes, is_done = len(thirds) // 3 + 1, True
+        seeds, is_done = len(thirds), True
         while is_done:
-            chosen, silhouettes = self._choose(thirds, 3 * silhouettes, view, limits)
+            chosen, silhouettes = self._choose(thirds, seeds, view, limits)
             allowed = max((most - int(self._net.counts[FACES])) // 2, 0)
             is_done = len(chosen) <= allowed
             chosen = chosen[:allowed]
             if len(chosen) == 0:
                 break
-            thirds = self._iterate(chosen)
+            thirds, seeds = self._iterate(chosen), 3 * silhouettes
         counts = self._net.counts
         return Update(int(counts[FACES]), int(counts[VERTICES]), int(counts[SPLITS]), undone, is_done)
 
@@ -127,7 +127,7 @@ class Sqrt3Filter:
         strips = extract.strips(
             net.positions, net.corners, net.beside, net.flags, net.marks, view, parts[0], chosen
         )
-        silhouettes, count = steps.choose(net, candidates, strips, chosen, view, limits, self.label // 3)
+        silhouettes, count = steps.choose(net, candidates, strips, chosen, view, limits, iteration)
         chosen[:silhouettes].sort()
         chosen[silhouettes:count].sort()
         return chosen[:count], int(silhouettes)
@@ -178,8 +178,8 @@ class Sqrt3Filter:
         net = self._net
         faces, vertices = int(net.counts[FACES]), int(net.counts[VERTICES])
         starts, moves = net.positions[:vertices].copy(), int(net.counts[MOVES])
-        undo_moves = slice(moves - 1, None, -1) if moves else slice(0)
-        starts[net.moved[undo_moves]] = net.before[undo_moves]  # of several the last counts: the first move
+        moved, before = net.moved[:moves], net.before[:moves]
+        starts[moved[::-1]] = before[::-1]  # of several the last one written counts: a vertex's first move
         return Slots(
             net.corners[:faces].copy(),
             self._positions(positions, vertices),
