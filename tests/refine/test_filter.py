@@ -226,3 +226,21 @@ def test_it_is_a_mode_of_sqrt3():
     assert (sqrt3(mesh, camera, mode="filter").faces == refined.mesh().faces).all()
     with pytest.raises(ValueError, match="mode must be exact or filter, got 'fast'"):
         Sqrt3(mesh, mode="fast")
+
+
+@pytest.mark.parametrize("budget", [None, 3000])
+def test_work_spread_over_frames_ends_in_the_same_mesh(budget):
+    mesh = bumpy_sphere(2, seed=3)
+    refined, fresh = Sqrt3Filter(mesh), Sqrt3Filter(mesh)
+    refined.update(around(mesh, 1.0), criteria=FINE, most_splits=300)  # it never ends: the camera moves on
+    whole = fresh.update(around(mesh), criteria=FINE, budget=budget)
+    splits = []
+    for _ in range(12):
+        done = refined.update(around(mesh), criteria=FINE, most_splits=200, budget=budget)
+        assert_surface(refined.mesh(), mesh)
+        splits.append(done.split)
+        assert done.is_done <= whole.is_done
+    assert splits[0] < whole.split == sum(splits)
+    assert splits[-1] == 0
+    assert done.is_done == whole.is_done == (budget is None)
+    assert state(refined) == state(fresh)

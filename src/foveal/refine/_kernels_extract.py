@@ -2,7 +2,8 @@
 """Which faces are in the vision frustum, face the eye, lie along the silhouette.
 
 `view` is as in `_kernels_criteria.py`; `corners`, `beside` are (m, 3): vertices, and the face beyond the edge
-from corner k to k + 1 or -1. `flags` (m,) carry what is known from one search, and iteration, to the next.
+from corner k to k + 1 or a negative number. `flags` (m,) carry what is known from one search, and iteration,
+to the next.
 
 Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent refinement of 3D meshes using
 √3-subdivision, sections 6.1 and 6.2.
@@ -117,7 +118,7 @@ def strips(positions, corners, beside, flags, marks, view, seeds, found):
             continue
         for k in range(3):
             n = np.int64(beside[f, k])
-            if n == NONE:
+            if n < 0:
                 continue
             # Most neighbours were tested with f: asked again, silhouettes took 1.3 times as long.
             is_tested = flags[n] & TESTED
@@ -150,7 +151,7 @@ def gather_around(corners, beside, flags, f, k, found, count):
             g = np.int64(beside[g, j if is_back else (j + 2) % 3])
             if g == f:
                 return count
-            if g == NONE:
+            if g < 0:
                 break
             j = corner_of(corners, g, v)
     return count

@@ -94,7 +94,7 @@ def silhouette_faces(
     positions, faces, camera
         As for `frustum_faces`; the mesh is an oriented surface.
     beside : (m, 3) int32
-        The face beyond the edge from corner k to k + 1, or -1, as in `Cage`.
+        The face beyond the edge from corner k to k + 1, or a negative number, as in `Cage`.
     among : (k,) int32, optional
         Search only the silhouette edges of these faces. What is found may be outside them.
 

@@ -29,6 +29,8 @@ __all__ = ["Sqrt3Filter"]
 #: Kobbelt's weights by valence; the kernels compute those beyond.
 _SHARES = np.array([0.0] + [(4 - 2 * math.cos(2 * math.pi / n)) / 9 for n in range(1, 64)])
 
+_NO_FACES, _EVER = np.empty(0, np.int32), int(np.iinfo(np.int32).max)
+
 
 class Sqrt3Filter:
     """The paper's own √3 refinement; `Sqrt3` is the one to use, this one is to compare with.
@@ -65,11 +67,21 @@ class Sqrt3Filter:
     def __init__(self, mesh: TriMesh, /, *, name: str = "mesh") -> None:
         self._net = FilterNet.of(Cage.of(mesh, name=name))
         self._ends: list[int] = []  # of each label: the length of its kind's history after its step
+        # What the mesh is refined for, and the rest of the sequence: faces that may be split, of which the
+        # first may have a silhouette edge; and whether the budget ended it.
+        self._wanted: tuple[bytes, bytes, int] | None = None
+        self._thirds, self._seeds, self._is_cut = _NO_FACES, 0, False
 
     def update(
-        self, camera: Camera, /, *, criteria: Criteria | None = None, budget: int | None = None
+        self,
+        camera: Camera,
+        /,
+        *,
+        criteria: Criteria | None = None,
+        most_splits: int | None = None,
+        budget: int | None = None,
     ) -> Update:
-        """Rewind, then refine for what `camera` sees.
+        """Rewind, then refine for what `camera` sees; for the same view again, go on where it ended.
 
         Parameters
         ----------
@@ -78,26 +90,37 @@ class Sqrt3Filter:
         criteria : Criteria, optional
             An iteration counts for all alike, whatever a face's level. `bend` is the angle between a face's
             normal and those of the faces beside it.
+        most_splits : int, optional
+            Stop after the iteration with which there are so many. Further updates go on, and end in the very
+            mesh that one without this limit makes.
         budget : int, optional
             Triangles at most: the sequence ends where the next split would pass it, silhouettes going first.
+            Then `is_done` is false, and stays so.
         """
-        undone = int(self._net.counts[SPLITS])
-        self.rewind()
-        most = max(budget if budget is not None else np.iinfo(np.int32).max, 0)
         view, limits = view_of(camera), (criteria or Criteria()).limits()
-        thirds = np.arange(self._net.counts[FACES], dtype=np.int32)
-        self._net.flags[: len(thirds)] = extract.AREA
-        seeds, is_done = len(thirds), True
-        while is_done:
-            chosen, silhouettes = self._choose(thirds, seeds, view, limits)
-            allowed = max((most - int(self._net.counts[FACES])) // 2, 0)
-            is_done = len(chosen) <= allowed
-            chosen = chosen[:allowed]
-            if len(chosen) == 0:
-                break
-            thirds, seeds = self._iterate(chosen), 3 * silhouettes
-        counts = self._net.counts
-        return Update(int(counts[FACES]), int(counts[VERTICES]), int(counts[SPLITS]), undone, is_done)
+        most = max(budget if budget is not None else _EVER, 0)
+        wanted = view.tobytes(), limits.tobytes(), most
+        undone = 0
+        if wanted != self._wanted:
+            undone = self._splits
+            self.rewind()
+            self._wanted, self._seeds = wanted, int(self._net.counts[FACES])
+            self._thirds = np.arange(self._seeds, dtype=np.int32)
+            self._net.flags[: self._seeds] = extract.AREA
+        before, allowed = self._splits, _EVER if most_splits is None else most_splits
+        while len(self._thirds) > 0 and self._splits - before < allowed:
+            chosen, silhouettes = self._choose(self._thirds, self._seeds, view, limits)
+            room = max((most - int(self._net.counts[FACES])) // 2, 0)
+            self._is_cut = len(chosen) > room
+            thirds = self._iterate(chosen[:room]) if min(len(chosen), room) else _NO_FACES
+            self._thirds, self._seeds = _NO_FACES if self._is_cut else thirds, 3 * silhouettes
+        faces, vertices = int(self._net.counts[FACES]), int(self._net.counts[VERTICES])
+        is_done = len(self._thirds) == 0 and not self._is_cut
+        return Update(faces, vertices, self._splits - before, undone, is_done)
+
+    @property
+    def _splits(self) -> int:
+        return int(self._net.counts[SPLITS])
 
     def _choose(
         self,
@@ -162,6 +185,7 @@ class Sqrt3Filter:
         """
         if not 0 <= to <= self.label:
             raise ValueError(f"to must be a label from 0 to {self.label}, got {to}")
+        self._wanted, self._thirds, self._is_cut = None, _NO_FACES, False
         actions = (undo.unsplit_all, undo.unmove_all, undo.unswap_all)
         while self.label > to:
             self._ends.pop()
