@@ -180,6 +180,15 @@ def test_limits_are_where_two_levels_of_uniform_subdivision_point_to(name):
     assert len(np.unique(index)) == len(limits)
 
 
+@pytest.mark.parametrize("positions", ["control", "limit"])
+def test_a_vertex_without_faces_stays(positions):
+    ball = icosphere(0)
+    mesh = TriMesh(np.concatenate([ball.positions, [[7.0, 8.0, 9.0]]]), ball.faces)
+    refined = Sqrt3(mesh)
+    refined.update(around(ball), criteria=everywhere(1))
+    assert (refined.mesh(positions=positions).positions == [7.0, 8.0, 9.0]).all(axis=1).any()
+
+
 def test_limits_of_a_border_are_those_of_its_cubic_spline():
     mesh = terrain(4)
     refined = Sqrt3(mesh)

@@ -1,6 +1,8 @@
 """Refinement of a control mesh: where it is looked at (√3, RGB), or everywhere (Loop, modified butterfly)."""
 
 from .criteria import Criteria, Region
+from .extract import front_faces, frustum_faces, silhouette_faces
+from .filter import Sqrt3Filter
 from .hidden import Hidden
 from .rgb import Rgb, rgb
 from .rgb_edges import Edges, by_distance, by_length
@@ -15,12 +17,16 @@ __all__ = [
     "Region",
     "Rgb",
     "Sqrt3",
+    "Sqrt3Filter",
     "Update",
     "butterfly",
     "by_distance",
     "by_length",
+    "front_faces",
+    "frustum_faces",
     "loop",
     "rgb",
     "sharp_edges",
+    "silhouette_faces",
     "sqrt3",
 ]

@@ -16,13 +16,11 @@ def base_points(positions, starts, ring, is_border, is_corner, vertices, normals
         begin, end = starts[v], starts[v + 1]
         n = end - begin
         for axis in range(3):
-            vertices[v].born[axis] = positions[v, axis]
+            vertices[v].born[axis] = vertices[v].limit[axis] = positions[v, axis]
         if n == 0:
             continue
         if is_corner[v]:
             vertices[v].kind = CORNER
-            for axis in range(3):
-                vertices[v].limit[axis] = positions[v, axis]
         elif is_border[v]:
             vertices[v].kind = BORDER
             p, q = ring[end - 1], ring[begin]

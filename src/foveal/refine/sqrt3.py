@@ -7,6 +7,7 @@ surface reconstruction. SIGGRAPH 1994, section 3 (creases and corners).
 """
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,7 +26,10 @@ from .hidden import Hidden
 from .net import Net
 from .slots import Placing, Slots
 
-__all__ = ["Sqrt3", "Update", "sqrt3"]
+__all__ = ["Mode", "Sqrt3", "Update", "sqrt3"]
+
+Mode = Literal["exact", "filter"]
+"""Uniform subdivision's points wherever they are shown, or the paper's own way; see `Sqrt3`."""
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
 _FACES, _VERTICES = 1 << 16, 1 << 15
@@ -202,9 +206,22 @@ class Sqrt3:
 
 
 def sqrt3(
-    mesh: TriMesh, camera: Camera, /, *, criteria: Criteria | None = None, sharp: ArrayLike | None = None
+    mesh: TriMesh,
+    camera: Camera,
+    /,
+    *,
+    criteria: Criteria | None = None,
+    sharp: ArrayLike | None = None,
+    mode: Mode = "exact",
 ) -> TriMesh:
     """A mesh refined for one view; see `Sqrt3`, which follows a camera.
+
+    Parameters
+    ----------
+    mesh, camera, criteria, sharp
+        As for `Sqrt3` and its `update`.
+    mode : "exact" or "filter"
+        "filter" is the paper's own way, `Sqrt3Filter`, to compare with.
 
     Examples
     --------
@@ -215,6 +232,16 @@ def sqrt3(
     >>> len(sqrt3(tetrahedron(), Camera.of([0, 0, 9], [0, 0, 0]), criteria=everywhere).faces)
     36
     """
+    if mode not in get_args(Mode):
+        raise ValueError(f"mode must be exact or filter, got {mode!r}")
+    if mode == "filter":
+        from .filter import Sqrt3Filter
+
+        if sharp is not None:
+            raise ValueError("the paper's own mode knows no sharp edges")
+        published = Sqrt3Filter(mesh)
+        published.update(camera, criteria=criteria)
+        return published.mesh()
     refined = Sqrt3(mesh, sharp=sharp)
     refined.update(camera, criteria=criteria)
     return refined.mesh()

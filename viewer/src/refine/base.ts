@@ -28,7 +28,9 @@ export function netOf(surface: Surface): Net {
   net.pairs.fill(NONE, 0, count);
   for (let i = 0; i < faces.length; i++) net.around[faces[i]!] = Math.floor(i / 3);
   for (let v = 0; v < count; v++) {
-    for (let k = 0; k < 3; k++) net.points[POINT * v + k] = positions[3 * v + k]!;
+    for (let k = 0; k < 3; k++) {
+      net.points[POINT * v + k] = net.points[POINT * v + LIMIT + k] = positions[3 * v + k]!;
+    }
     if (surface.starts[v] === surface.starts[v + 1]) continue;
     if (surface.isBorder[v]) borderVertex(net, surface, v);
     else innerVertex(net, surface, v);
