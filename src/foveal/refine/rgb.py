@@ -167,7 +167,6 @@ class Rgb:
                 order
             ):
                 state.grow()
-            kernels.mark_needed(state.net, order)
             kernels.coarsen(state.net, order)
             kernels.enqueue_expired(state.net, self._drift)
         most = _EVER if most_splits is None else int(state.net.counts[SPLITS]) + most_splits
@@ -240,7 +239,7 @@ def rgb(
     --------
     >>> from foveal.mesh.shapes import tetrahedron
     >>> from foveal.refine import by_length
-    >>> len(rgb(tetrahedron(), criteria=by_length(2.0)).faces)
+    >>> len(rgb(tetrahedron(), criteria=by_length(0.5)).faces)
     16
     """
     refined = Rgb(mesh, scheme=scheme)
