@@ -214,7 +214,7 @@ def test_one_can_come_as_near_as_doubles_go():
     top = points[points[:, 1].argmax()]  # well beneath the control mesh: an eye near it is inside that
     criteria, highest = Criteria(Region(30, 40.0), Region(30, 20.0), Region(0)), []
     for near in (0.1, 1e-3, 1e-5):
-        camera = Camera.of(top + np.array([0, near, 0]), top, up=(0, 0, 1))
+        camera = Camera.of(np.add(top, [0, near, 0]), top, up=(0, 0, 1))
         refined.update(camera, criteria=criteria)
         assert_same(refined.mesh(), rgb(mesh, camera, criteria=criteria))
         assert_surface(refined.mesh(), mesh)

@@ -13,6 +13,8 @@ so on: everything a stencil asks for is some weights away, whether it is in the 
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_layout import (
     CLOCK,
     FREE_VERTEX,
@@ -20,7 +22,6 @@ from ._kernels_rgb_layout import (
     NONE,
     VERTICES,
     corner_at,
-    lean,
 )
 
 #: Levels at most: weights have 21 bits.

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_address import LEVELS, middle_key, slot_of
 from ._kernels_rgb_criteria import has_wanted_parents
 from ._kernels_rgb_known import ASK_BORN
@@ -17,7 +19,6 @@ from ._kernels_rgb_layout import (
     dequeue,
     edge_level,
     find_edge,
-    lean,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
 from ._kernels_rgb_update import force, has_room, is_asked_at

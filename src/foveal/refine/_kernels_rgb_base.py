@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_address import BASE_KEY, enter
 from ._kernels_rgb_layout import (
     BASE_COUNT,
@@ -15,10 +17,9 @@ from ._kernels_rgb_layout import (
     PRESENT,
     SCHEME,
     VERTICES,
-    lean,
 )
 from ._kernels_rgb_points import away, cross, unit
-from ._kernels_rgb_turn import turn
+from ._kernels_turn import turn
 
 
 @lean
@@ -32,7 +33,7 @@ def base_vertices(net, positions, starts, ring, is_border):
         net.births[v], net.flags[v] = 0, BORN | LIMIT | PRESENT
         vertex.key = v + BASE_KEY
         vertex.shrink = 0.25
-        turn_cos = turn(n)[0] if n > 1 else 1.0
+        turn_cos = turn(1, n)[0] if n > 1 else 1.0
         share = 0.375 + 0.25 * turn_cos
         if n > 0 and not is_border[v]:
             vertex.shrink = share * share

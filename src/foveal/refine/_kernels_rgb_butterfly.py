@@ -16,10 +16,12 @@ SIGGRAPH 1996, with w = 0.
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_address import LEFT, RIGHT, SIDE, at, side
 from ._kernels_rgb_known import push_unknown, set_born
-from ._kernels_rgb_layout import LIMIT, NONE, lean
-from ._kernels_rgb_turn import turn
+from ._kernels_rgb_layout import LIMIT, NONE
+from ._kernels_turn import turn
 
 
 @lean
@@ -121,7 +123,7 @@ def butterfly_needs(net, top, v):
 def ring_sum(net, face, k, n, step, axis):
     """The scheme's sum around an extraordinary end."""
     total = 0.75 * net.vertices[net.base[face].corners[k]].born[axis]
-    turn_cos, turn_sin = turn(n)
+    turn_cos, turn_sin = turn(1, n)
     c, s = 1.0, 0.0
     for j in range(n):
         if n == 3:

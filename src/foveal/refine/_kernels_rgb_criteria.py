@@ -9,6 +9,8 @@ surface bent as much again.
 
 import math
 
+from foveal.base.jit import lean
+
 from ._kernels_criteria import (
     BACK,
     BALL,
@@ -23,7 +25,7 @@ from ._kernels_criteria import (
     trusted,
 )
 from ._kernels_rgb_address import LEVELS
-from ._kernels_rgb_layout import WANTED, lean
+from ._kernels_rgb_layout import WANTED
 from ._kernels_rgb_points import ensure_at, position
 
 

@@ -12,10 +12,7 @@ Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, sections
 
 import numpy as np
 
-from foveal.base import jit
-
-#: Allocates nothing and counts no references, where the compile switch offers that.
-lean = getattr(jit, "lean", jit.kernel)
+from foveal.base.jit import lean
 
 NONE = -1
 

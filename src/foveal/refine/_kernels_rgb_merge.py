@@ -10,6 +10,8 @@ Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, section 
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_layout import (
     BLUE,
     GREEN,
@@ -21,7 +23,6 @@ from ._kernels_rgb_layout import (
     find_edge,
     give_face,
     know,
-    lean,
     level_of,
     painted,
     put,

@@ -3,6 +3,8 @@
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_address import remove
 from ._kernels_rgb_known import ASK_LIMIT
 from ._kernels_rgb_layout import (
@@ -14,7 +16,6 @@ from ._kernels_rgb_layout import (
     LIMIT,
     PRESENT,
     VERTICES,
-    lean,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
 from ._kernels_rgb_update import has_room

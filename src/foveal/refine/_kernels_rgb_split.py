@@ -11,6 +11,8 @@ Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, section 
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_layout import (
     BLUE,
     GREEN,
@@ -20,7 +22,6 @@ from ._kernels_rgb_layout import (
     colour,
     corner_at,
     know,
-    lean,
     level_of,
     painted,
     put,

@@ -14,6 +14,8 @@ import math
 
 import numpy as np
 
+from foveal.base.jit import lean
+
 from ._kernels_rgb_address import middle_key, slot_of
 from ._kernels_rgb_criteria import has_wanted_parents, wants_edge
 from ._kernels_rgb_known import ASK_BORN
@@ -43,7 +45,6 @@ from ._kernels_rgb_layout import (
     edge_level,
     enqueue,
     find_edge,
-    lean,
 )
 from ._kernels_rgb_merge import merge_topology
 from ._kernels_rgb_points import ensure, set_normal
@@ -162,7 +163,7 @@ def has_room(net):
 
 @lean
 def review(net, order, begin, view, limits, drift):
-    """Set WANTED anew for the vertices of `order`, by rising birth, from the begin-th on.
+    """Set WANTED anew, and NEEDED to no, for the vertices of `order`, by rising birth, from the begin-th on.
 
     Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted, so may edges at it.
     """
@@ -170,27 +171,12 @@ def review(net, order, begin, view, limits, drift):
         if not has_room(net):
             return i
         v = np.int64(order[i])
+        net.flags[v] &= ~NEEDED
         was_wanted = net.flags[v] & WANTED
         judge(net, v, view, limits, drift)
         if net.flags[v] & WANTED and not was_wanted:
             ask_around(net, v)
     return len(order)
-
-
-@lean
-def mark_needed(net, order):
-    """Set NEEDED anew, from the last born to the first."""
-    for v in order:
-        net.flags[v] &= ~NEEDED
-    for i in range(len(order) - 1, -1, -1):
-        v = order[i]
-        if net.flags[v] & (WANTED | NEEDED):
-            diamond = net.vertices[v].diamond
-            level = net.births[v] - 1
-            for k in range(4):
-                u = diamond[k]
-                if u != NONE and level > 0 and net.births[u] == level:
-                    net.flags[u] |= NEEDED
 
 
 @lean
@@ -212,11 +198,17 @@ def sort_by_birth(net, starts, order):
 
 @lean
 def coarsen(net, order):
-    """Take out the vertices that are not needed, finest first."""
+    """Take out the vertices that are neither wanted nor needed, from the last born to the first."""
     for i in range(len(order) - 1, -1, -1):
         v = np.int64(order[i])
         if net.flags[v] & (WANTED | NEEDED) == 0:
             merge_vertex(net, v)
+            continue
+        diamond, level = net.vertices[v].diamond, net.births[v] - 1
+        for k in range(4):
+            u = diamond[k]
+            if level > 0 and u != NONE and net.births[u] == level:
+                net.flags[u] |= NEEDED
 
 
 @lean

@@ -38,6 +38,10 @@ class Drift:
         """Whether view and limits are the last ones."""
         return np.array_equal(view, self.view) and np.array_equal(limits, self.limits)
 
+    def forget(self) -> None:
+        """Let no answer hold for the next view."""
+        self.limits = np.zeros(0)
+
     def move(
         self, view: NDArray[np.float64], limits: NDArray[np.float64], corners: NDArray[np.float64], /
     ) -> bool:

@@ -25,6 +25,7 @@ from . import _kernels_rgb_update as kernels
 from ._kernels_rgb_layout import BUTTERFLY, FACES, FREE_CODE, LOOP, MERGES, PRESENT, SPLITS, VERTICES, WAITING
 from .cage import Cage
 from .criteria import Criteria, view_of
+from .drift import Drift
 from .rgb_asked import bring_measured
 from .rgb_budget import scaled, step_within
 from .rgb_edges import Measure
@@ -89,8 +90,8 @@ class Rgb:
         cage = Cage.of(mesh, name=name)
         self._state = State(cage, LOOP if scheme == "loop" else BUTTERFLY)
         self._cached, self._step = cached, 0
-        self._drift = 1.0
-        self._view, self._limits = np.zeros(24), np.zeros(0)
+        low, high = self._state.box()[[0, -1]]
+        self._drift = Drift(float(np.linalg.norm(high - low)))
 
     def update(
         self,
@@ -151,7 +152,7 @@ class Rgb:
             limits = scaled((criteria or Criteria()).limits(), step)
             self._bring_view(view_of(camera), limits, most_faces, most_splits)
         else:
-            self._limits = np.zeros(0)  # no answer about a view will hold
+            self._drift.forget()
             bring_measured(self._state, criteria, 2.0 ** (step / 8), most_faces)
         return self._state.faces <= most_faces
 
@@ -160,32 +161,20 @@ class Rgb:
     ) -> None:
         state = self._state
         # Of the same view the rest is done: what was forced for edges not split yet is not to be undone.
-        if not (np.array_equal(view, self._view) and np.array_equal(limits, self._limits)):
-            self._move(view, limits)
+        if not self._drift.is_still(view, limits):
+            if not self._drift.move(view, limits, state.box()):
+                state.net.faces["until"] = state.net.vertices["until"] = 0.0
+            drift = self._drift.total
             order, begin = state.order(), 0
-            while (begin := int(kernels.review(state.net, order, begin, view, limits, self._drift))) < len(
-                order
-            ):
+            while (begin := int(kernels.review(state.net, order, begin, view, limits, drift))) < len(order):
                 state.grow()
             kernels.mark_needed(state.net, order)
             kernels.coarsen(state.net, order)
-            kernels.enqueue_expired(state.net, self._drift)
+            kernels.enqueue_expired(state.net, drift)
+        drift = self._drift.total
         most = _EVER if most_splits is None else int(state.net.counts[SPLITS]) + most_splits
-        while kernels.refine(state.net, view, limits, self._drift, most, most_faces) == kernels.NO_ROOM:
+        while kernels.refine(state.net, view, limits, drift, most, most_faces) == kernels.NO_ROOM:
             state.grow()
-
-    def _move(self, view: NDArray[np.float64], limits: NDArray[np.float64]) -> None:
-        """Add to the drift what the view moved by; for other criteria or pixels no answer holds."""
-        if not np.array_equal(limits, self._limits) or view[3] != self._view[3]:
-            net = self._state.net
-            net.faces["until"][: net.counts[FACES]] = 0.0
-            net.vertices["until"][: net.counts[VERTICES]] = 0.0
-        else:
-            planes = (view[4:] - self._view[4:]).reshape(5, 4)
-            # Answers are about points in this box, as it was when they were given.
-            moved = float(np.abs(self._state.box() @ planes[:, :3].T + planes[:, 3]).max())
-            self._drift += 1.001 * max(float(np.linalg.norm(view[:3] - self._view[:3])), moved)
-        self._view, self._limits = view, limits
 
     def mesh(self, *, positions: Placing = "control") -> TriMesh:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
@@ -240,7 +229,7 @@ def rgb(
     --------
     >>> from foveal.mesh.shapes import tetrahedron
     >>> from foveal.refine import by_length
-    >>> len(rgb(tetrahedron(), criteria=by_length(2.0)).faces)
+    >>> len(rgb(tetrahedron(), criteria=by_length(0.5)).faces)
     16
     """
     refined = Rgb(mesh, scheme=scheme)

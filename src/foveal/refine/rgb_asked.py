@@ -25,7 +25,6 @@ def bring_measured(state: State, measure: Measure, scale: float, most_faces: int
     _answer_split(state, measure, scale)
     order = state.order()
     _review(state, order)
-    update_kernels.mark_needed(state.net, order)
     update_kernels.coarsen(state.net, order)
     update_kernels.enqueue_expired(state.net, 1.0)
     while state.faces <= most_faces:
