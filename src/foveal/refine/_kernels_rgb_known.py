@@ -1,15 +1,15 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """What is known of a vertex, and the list of what has to be known first."""
 
-from foveal.base.jit import inlined
+from foveal.base.jit import lean
 
-from ._kernels_rgb_layout import BORN, LIMIT, STACK, lean
+from ._kernels_rgb_layout import BORN, LIMIT, STACK
 
 #: What is asked of a vertex: where it was born, its limit.
 ASK_BORN, ASK_LIMIT = 0, 1
 
 
-@inlined
+@lean
 def is_known(net, v, level):
     """Whether it is known where v is on a level not below its birth."""
     flags = net.flags[v]

@@ -16,17 +16,17 @@ import math
 
 import numpy as np
 
-from foveal.base.jit import inlined
+from foveal.base.jit import lean
 
 from ._kernels_rgb_address import LEFT, RIGHT, at, side
 from ._kernels_rgb_butterfly import butterfly_born, butterfly_needs
 from ._kernels_rgb_known import ASK_BORN, ASK_LIMIT, is_known, push, push_unknown, set_born
-from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, PRESENT, SCHEME, STACK, lean
+from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, PRESENT, SCHEME, STACK
 
 SIXTH = 1.0 / 6.0
 
 
-@inlined
+@lean
 def position(net, v, level):
     """(x, y, z) of vertex v on a level not below its birth; what it takes is known."""
     vertex = net.vertices[v]
@@ -179,7 +179,7 @@ def ensure(net, v, ask):
         top -= 1
 
 
-@inlined
+@lean
 def ensure_at(net, v, level):
     """Compute what it takes to say where v is on a level."""
     if not is_known(net, v, level):

@@ -168,7 +168,6 @@ class Rgb:
             order, begin = state.order(), 0
             while (begin := int(kernels.review(state.net, order, begin, view, limits, drift))) < len(order):
                 state.grow()
-            kernels.mark_needed(state.net, order)
             kernels.coarsen(state.net, order)
             kernels.enqueue_expired(state.net, drift)
         drift = self._drift.total
