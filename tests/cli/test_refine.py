@@ -175,13 +175,11 @@ def test_a_wrong_command_line_exits_with_2(run, cage, tmp_path, words, part):
     assert not (tmp_path / "a.ply").exists()
 
 
-def test_schemes_that_are_not_there_are_a_sentence(run, cage, tmp_path):
-    import foveal.refine
-
-    answer = run("refine", cage, "-o", tmp_path / "a.ply", "--scheme", "loop")
-    if not hasattr(foveal.refine, "Rgb"):
-        assert answer.exit_code == 1
-        assert "Choose sqrt3" in answer.stderr
+@pytest.mark.parametrize("scheme", ["loop", "butterfly"])
+def test_the_other_schemes_refine_as_well(run, cage, tmp_path, scheme):
+    answer = run("refine", cage, "-o", tmp_path / "a.ply", "--scheme", scheme)
+    assert answer.exit_code == 0
+    assert (tmp_path / "a.ply").stat().st_size > 0
 
 
 def test_what_does_not_go_together_is_said(run, cage, tmp_path, monkeypatch):

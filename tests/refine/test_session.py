@@ -9,8 +9,8 @@ import pytest
 from foveal import FovealError
 from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain, tetrahedron
 from foveal.mesh.trimesh import TriMesh
-from foveal.refine import Sqrt3
 from foveal.refine.pace import coarser
+from foveal.refine.scheme import refiner
 from foveal.refine.session import MOST_TRIANGLES, Session, origin_of
 from foveal.refine.wire import request_of
 from refine.wire_page import Page, wish
@@ -45,24 +45,25 @@ def shown(page):
     return {min(c[k:].tobytes() + c[:k].tobytes() for k in range(3)) for c in corners}
 
 
-def fresh(mesh, step=0, positions="control", **what):
+def fresh(mesh, step=0, positions="control", scheme="sqrt3", **what):
     """The same by a refinement that never saw anything else."""
     request = request_of(json.dumps(wish(**what)))
-    refined = Sqrt3(mesh)
+    refined = refiner(mesh, scheme=scheme)
     refined.update(request.camera, criteria=coarser(request.criteria, step))
     found = refined.mesh(positions=positions)
     points = np.float32(found.positions - origin_of(mesh))
     return {min(c[k:].tobytes() + c[:k].tobytes() for k in range(3)) for c in points[found.faces]}
 
 
+@pytest.mark.parametrize("scheme", ["sqrt3", "loop", "butterfly"])
 @pytest.mark.parametrize("mesh", [BALL, terrain(8), tetrahedron()], ids=["closed", "open", "few"])
-def test_a_page_has_what_a_fresh_refinement_has(mesh):
-    session, page = Session(mesh), Page()
+def test_a_page_has_what_a_fresh_refinement_has(mesh, scheme):
+    session, page = Session(mesh, scheme=scheme), Page()
     rng = np.random.default_rng(5)
     for _ in range(12):
         view = {"angle": float(rng.uniform(0, 7)), "away": float(rng.uniform(1.5, 6)), "iterations": 3}
         settle(session, page, **view)
-        assert shown(page) == fresh(mesh, **view)
+        assert shown(page) == fresh(mesh, scheme=scheme, **view)
         assert page.head["triangles"] == len(shown(page))
         assert page.head["threshold"] == 1
 

@@ -35,7 +35,7 @@ def refine(
         bool, typer.Option("--everywhere", help="Refine uniformly, --iterations times, whatever is seen.")
     ] = False,
     visible_only: Annotated[
-        bool, typer.Option("--visible-only", help="Leave fronts alone that are behind others. For sqrt3.")
+        bool, typer.Option("--visible-only", help="Leave alone what is behind the rest. For sqrt3.")
     ] = False,
     up: Up = None,
     force: Force = False,

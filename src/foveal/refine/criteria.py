@@ -55,11 +55,11 @@ class Criteria:
     back: Region = field(default_factory=lambda: Region(0))
 
     def limits(self) -> NDArray[np.float64]:
-        """(6, 3): what kernels read; the bend as 1 - cos. The last three rows where fronts are hidden."""
+        """(6, 3): what kernels read; the bend as 1 - cos. The last three rows for what is hidden."""
         return np.array(
             [
                 (r.iterations, r.edge_px, 1 - math.cos(r.bend))
-                for r in (self.front, self.silhouette, self.back, self.back, self.silhouette, self.back)
+                for r in (self.front, self.silhouette, self.back, self.back, self.back, self.back)
             ]
         )
 

@@ -17,9 +17,8 @@ _WIDTH = 256
 class Hidden:
     """A depth buffer, such as the last frame's, with its camera.
 
-    A front face is hidden if a ball around it is: if all that the picture shows there is nearer. What the
-    picture does not show is not hidden. `Sqrt3.update(..., hidden=...)` refines hidden front faces as it
-    does those that face away.
+    A face is hidden if a ball around it is: if all that the picture shows there is nearer. What the picture
+    does not show is not hidden. `Sqrt3.update(..., hidden=...)` refines hidden faces as those that face away.
 
     Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent refinement of 3D meshes
     using √3-subdivision, its future work; N. Greene, M. Kass, G. Miller. Hierarchical Z-buffer visibility.

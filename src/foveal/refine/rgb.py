@@ -26,8 +26,9 @@ from ._kernels_rgb_layout import BUTTERFLY, FACES, FREE_CODE, LOOP, MERGES, PRES
 from .cage import Cage
 from .criteria import Criteria, view_of
 from .drift import Drift
+from .pace import coarser, factor
 from .rgb_asked import bring_measured
-from .rgb_budget import scaled, step_within
+from .rgb_budget import step_within
 from .rgb_edges import Measure
 from .rgb_net import check_base
 from .rgb_state import State
@@ -149,11 +150,11 @@ class Rgb:
         if criteria is None or isinstance(criteria, Criteria):
             if camera is None:
                 raise ValueError("criteria of a view need a camera")
-            limits = scaled((criteria or Criteria()).limits(), step)
+            limits = coarser(criteria or Criteria(), step).limits()
             self._bring_view(view_of(camera), limits, most_faces, most_splits)
         else:
             self._drift.forget()
-            bring_measured(self._state, criteria, 2.0 ** (step / 8), most_faces)
+            bring_measured(self._state, criteria, factor(step), most_faces)
         return self._state.faces <= most_faces
 
     def _bring_view(

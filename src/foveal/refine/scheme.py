@@ -2,11 +2,11 @@
 
 from typing import Literal, Protocol, get_args
 
-from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from .criteria import Criteria
+from .rgb import Rgb
 from .slots import Placing, Slots
 from .sqrt3 import Sqrt3, Update
 
@@ -49,7 +49,9 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
     Raises
     ------
     FovealError
-        If the mesh is no oriented surface, or the scheme is not there.
+        If the mesh is no oriented surface.
+    ValueError
+        If there is no such scheme.
 
     Examples
     --------
@@ -61,10 +63,4 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
         raise ValueError(f"scheme must be one of {', '.join(SCHEMES)}, got {scheme!r}")
     if scheme == "sqrt3":
         return Sqrt3(mesh, name=name)
-    import foveal.refine as room
-
-    rgb = getattr(room, "Rgb", None)
-    if rgb is None:
-        raise FovealError(f"{name}: the scheme {scheme!r} is not there yet. Choose sqrt3.")
-    made: Refiner = rgb(mesh, scheme=scheme, name=name)
-    return made
+    return Rgb(mesh, scheme=scheme, name=name)

@@ -125,7 +125,7 @@ class Sqrt3:
             In the space of the mesh: of a placed model move the camera, inversely.
         criteria : Criteria, optional
         hidden : Hidden, optional
-            Refine front faces that it hides as those that face away. A depth buffer other than the last
+            Refine faces that it hides as those that face away. A depth buffer other than the last
             one has all asked anew, which takes half of what a fresh refinement does.
         most_splits : int, optional
             Stop after about so many, with a mesh that is whole but not yet as fine as wanted. Further updates
