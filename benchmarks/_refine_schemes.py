@@ -8,12 +8,11 @@ import numpy as np
 from _refine_levels import Edges, Hierarchy, Mask, by_view
 from _refine_models import TURNS, camera, criteria
 from _refine_redgreen import least_count, red_green, wanted_edges
-from _refine_views import rgb_scheme
 from numpy.typing import NDArray
 
 from foveal.mesh import TriMesh
 from foveal.mesh.distance import SurfaceIndex, sample_surface
-from foveal.refine import Criteria, Region, Sqrt3, loop
+from foveal.refine import Criteria, Region, Rgb, Sqrt3, loop
 from foveal.view.camera import Camera
 
 SAMPLES = 20_000
@@ -67,11 +66,10 @@ def meshes(
         )
         size = hierarchy.bytes_used() / len(fine.faces)
         yield Made(name, len(fine.faces), ms, size), fine
-    for name, make in (("RGB", rgb_scheme()), ("√3", Sqrt3)):
-        if make:
-            ms, refined = timed(lambda make=make: _refined(make, mesh, view, wish))
-            fine = placed(refined)
-            yield Made(name, len(fine.faces), ms, refined.bytes_used / len(fine.faces)), fine
+    for name, make in (("RGB", Rgb), ("√3", Sqrt3)):
+        ms, refined = timed(lambda make=make: _refined(make, mesh, view, wish))
+        fine = placed(refined)
+        yield Made(name, len(fine.faces), ms, refined.bytes_used / len(fine.faces)), fine
 
 
 def _refined(make: Callable[[TriMesh], object], mesh: TriMesh, view: Camera, wish: Criteria) -> object:
@@ -160,8 +158,7 @@ def growth(mesh: TriMesh, iterations: int) -> dict[str, list[int]]:
     count, made = len(mesh.faces), {}
     made["uniform Loop"] = [count * 4**i for i in range(iterations + 1)]
     made["uniform √3"] = [count * 3**i for i in range(iterations + 1)]
-    for name, make in (("√3 by view", Sqrt3), ("RGB by view", rgb_scheme())):
-        if make:
-            wishes = [Criteria(Region(min(i, 3)), Region(i), Region(0)) for i in range(iterations + 1)]
-            made[name] = [int(make(mesh).update(camera(mesh), criteria=wish).faces) for wish in wishes]
+    for name, make in (("√3 by view", Sqrt3), ("RGB by view", Rgb)):
+        wishes = [Criteria(Region(min(i, 3)), Region(i), Region(0)) for i in range(iterations + 1)]
+        made[name] = [int(make(mesh).update(camera(mesh), criteria=wish).faces) for wish in wishes]
     return made

@@ -7,11 +7,10 @@ import numpy as np
 from _refine_levels import Hierarchy, by_view
 from _refine_models import EDGE_PX, TURNS, camera, criteria, real
 from _refine_redgreen import red_green, wanted_edges
-from _refine_views import rgb_scheme
 from _shape import Row
 
 from foveal.mesh import TriMesh
-from foveal.refine import Sqrt3
+from foveal.refine import Rgb, Sqrt3
 
 
 @dataclass
@@ -28,7 +27,6 @@ class Needed:
 def needed(mesh: TriMesh, *, edge_px: float = EDGE_PX) -> Needed:
     """All schemes for the same cameras and limits."""
     hierarchy, found, wish = Hierarchy(mesh), Needed(), criteria(edge_px)
-    make = rgb_scheme()
     for degrees in TURNS:
         view = camera(mesh, degrees)
         is_wanted = by_view(hierarchy, view, wish)
@@ -36,8 +34,7 @@ def needed(mesh: TriMesh, *, edge_px: float = EDGE_PX) -> Needed:
         found.red_green.append(red_green(hierarchy, is_wanted).count())
         found.sparing.append(red_green(hierarchy, is_wanted, is_sparing=True).count())
         found.sqrt3.append(Sqrt3(mesh).update(view, criteria=wish).faces)
-        if make:
-            found.rgb.append(make(mesh).update(view, criteria=wish).faces)
+        found.rgb.append(Rgb(mesh).update(view, criteria=wish).faces)
     return found
 
 
@@ -45,8 +42,8 @@ def ratios(*, is_quick: bool) -> Iterator[Row]:
     """RGB against red-green and √3: the median of the cameras for each mesh, the worst mesh first."""
     bars = {"rgb_vs_redgreen_triangles": 0.85, "rgb_vs_sqrt3_triangles": None}
     meshes = list(real())[: 1 if is_quick else None]
-    why = "foveal.refine.Rgb is not there" if rgb_scheme() is None else "" if meshes else "no shared meshes"
-    if why:
+    if not meshes:
+        why = "no shared meshes"
         for key, bar in bars.items():
             yield Row(key, f"{EDGE_PX:g} px", None, "ratio", "lower", bar=bar, why=why)
         return

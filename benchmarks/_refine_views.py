@@ -3,32 +3,24 @@
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import _refine_page as in_page
 import _refine_peers as peers
 from _refine_models import camera, criteria, head, threshold
 from _shape import Row, seconds
 
-from foveal.base.jit import kernel
+import foveal.refine.filter as published
 from foveal.mesh import TriMesh
-from foveal.mesh.normals import vertex_normals
-from foveal.refine import Criteria, Region, Sqrt3
-from foveal.refine._kernels_criteria import is_wanted
-from foveal.refine.criteria import view_of
+from foveal.refine import Criteria, Region, Rgb, Sqrt3, Sqrt3Filter
 
 Make = Callable[[TriMesh], Any]
 """A scheme: `Sqrt3`, or what has its methods."""
-
-
-def rgb_scheme() -> Make | None:
-    """`foveal.refine.Rgb`, where this foveal has it."""
-    import foveal.refine
-
-    return getattr(foveal.refine, "Rgb", None)
 
 
 @cache
@@ -115,35 +107,51 @@ def sqrt3(folder: Path, *, is_quick: bool) -> Iterator[Row]:
     )
 
 
-@kernel
-def classify(view, limits, faces, positions, normals):
-    """Ask of every triangle whether it is in the frustum, front, silhouette or back, and fine enough."""
-    count = 0
-    for f in range(len(faces)):
-        u, v, w = faces[f, 0], faces[f, 1], faces[f, 2]
-        a, b, c = positions[u], positions[v], positions[w]
-        answer, _ = is_wanted(
-            view, limits, 1, a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], normals, u, v, w
-        )
-        count += answer
-    return count
-
-
 def silhouette(*, is_quick: bool) -> Iterator[Row]:
-    """The share that asking has of a fresh refinement: once of each triangle there is and of each split."""
+    """The share of looking for silhouettes, and of all extraction, in a refinement as the paper publishes it.
+
+    There both are steps of their own; the exact mode asks each triangle once where it is and how fine it is.
+    """
     mesh, name = head()
-    px, _ = pixels(Sqrt3, 43_000)
-    wish, refined = criteria(px), Sqrt3(mesh)
-    done = refined.update(camera(mesh), criteria=wish)
-    fine = refined.mesh()
-    normals = vertex_normals(fine)
-    words = view_of(camera(mesh)), wish.limits(), fine.faces, fine.positions, normals
-    classify(*words)
-    shares = []
-    for _ in range(5 if is_quick else 21):
-        asked = seconds(lambda: classify(*words)) * (done.faces + done.split) / done.faces
-        shares.append(asked / seconds(lambda: _fresh(Sqrt3, mesh, camera(mesh), wish)))
-    yield Row.of("silhouette_share", name, shares, "of fresh", "lower", bar=0.1, peers={"paper": 0.02})
+    px, _ = pixels(Sqrt3Filter, 43_000)
+    refined, wish = Sqrt3Filter(mesh), criteria(px)
+    shares: dict[str, list[float]] = {"silhouette_share": [], "extraction_share": []}
+    for turn in range(6 if is_quick else 22):
+        with _timed(published.extract, ("keep_inside", "face_the_eye", "strips")) as spent:
+            whole = seconds(lambda turn=turn: refined.update(camera(mesh, turn), criteria=wish))
+        if turn:  # the first is the warm-up
+            shares["silhouette_share"].append(spent["strips"] / whole)
+            shares["extraction_share"].append(sum(spent.values()) / whole)
+    yield Row.of(
+        "silhouette_share",
+        name,
+        shares["silhouette_share"],
+        "of all",
+        "lower",
+        bar=0.1,
+        peers={"paper": 0.02},
+    )
+    yield Row.of("extraction_share", name, shares["extraction_share"], "of all", "lower")
+
+
+@contextmanager
+def _timed(module: Any, names: tuple[str, ...]) -> Iterator[dict[str, float]]:
+    """Seconds that functions of a module take while this is open."""
+    spent = dict.fromkeys(names, 0.0)
+
+    def timed(name: str) -> Callable[..., Any]:
+        function = getattr(module, name)
+
+        def called(*values: Any) -> Any:
+            begin = time.perf_counter()
+            answer = function(*values)
+            spent[name] += time.perf_counter() - begin
+            return answer
+
+        return called
+
+    with patch.multiple(module, **{name: timed(name) for name in names}):
+        yield spent
 
 
 def page(*, is_quick: bool) -> Iterator[Row]:
@@ -158,12 +166,7 @@ def rgb(*, is_quick: bool) -> Iterator[Row]:
     """The head to about 100,000 triangles by RGB."""
     bars = {"rgb_fresh_100k_ms": 200, "rgb_orbit_1deg_ms": 10}
     _, name = head()
-    make = rgb_scheme()
-    if make is None:
-        for key, bar in bars.items():
-            yield Row(key, name, None, "ms", "lower", bar=bar, why="foveal.refine.Rgb is not there")
-        return
-    done = walk(make, 100_000, 3 if is_quick else 15)
+    done = walk(Rgb, 100_000, 3 if is_quick else 15)
     case = f"{name} to {done.faces:,}, {done.edge_px:.2f} px"
     for key, values in zip(bars, (done.fresh, done.orbit), strict=True):
         yield Row.of(key, case, values, "ms", "lower", bar=bars[key])
@@ -172,16 +175,11 @@ def rgb(*, is_quick: bool) -> Iterator[Row]:
 def rgb_operations(*, is_quick: bool) -> Iterator[Row]:
     """Splits, and merges, a second of RGB: everything that an update does counts in its time."""
     mesh, name = head()
-    make = rgb_scheme()
-    if make is None:
-        why = "foveal.refine.Rgb is not there"
-        yield Row("rgb_ops_per_s", name, None, "M/s", "higher", bar=0.7, why=why)
-        return
-    px, _ = pixels(make, 100_000)
+    px, _ = pixels(Rgb, 100_000)
     coarse = Criteria(Region(0), Region(0), Region(0))
     speeds: dict[str, list[float]] = {"splits": [], "merges": []}
     for turn in range(4 if is_quick else 12):
-        refined, view = make(mesh), camera(mesh, turn)
+        refined, view = Rgb(mesh), camera(mesh, turn)
         begin = time.perf_counter()
         finer = refined.update(view, criteria=criteria(px))
         middle = time.perf_counter()

@@ -74,13 +74,42 @@ def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, 
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
     # `low` changes as quickly as the eye moves at most, `high - low` by the normals' distance times that.
     spread = math.sqrt(max(2.0 - 2.0 * least, 0.0)) if level > 0 else 2.0
-    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
-    if level >= limits[kind, ITERATIONS] or 1.0 - least < limits[kind, BEND]:
-        return False, trusted(slack, away)
-    if limits[kind, EDGE] > 0.0:
-        reach = view[PIXELS] * longest / limits[kind, EDGE]
-        return reach > away, trusted(min(slack, abs(reach - away)), away)
-    return True, trusted(slack, away)
+    ease = 1.0 / (1.0 + spread)
+    size = view[PIXELS] * longest
+    answer, margin = judge(limits, kind, level, 1.0 - least, size, away, front * ease, back * ease)
+    return answer, trusted(min(slack, margin), away)
+
+
+@lean
+def judge(limits, kind, level, bend, size, away, front, back):
+    """(whether a kind's limits ask for more, how far the eye may move before they do not, or do).
+
+    `front` and `back` say how far the eye is, at least, from where this would be a front or no front any
+    more, a back or no back any more. Another kind that says the same is none to beware of: silhouettes become
+    fronts as one looks around, but many are fine enough for both, or coarse enough: on an orbit a fourth
+    of the answers that had to be given anew were such.
+    """
+    answer, margin = is_coarse(limits, kind, level, bend, size, away)
+    for other in range(3):
+        if other == kind:
+            continue
+        until = -front if other == FRONT else (-back if other == BACK else max(front, back))
+        same, beyond = is_coarse(limits, other, level, bend, size, away)
+        if same == answer:
+            until = max(until, beyond)
+        margin = min(margin, until)
+    return answer, margin
+
+
+@lean
+def is_coarse(limits, kind, level, bend, size, away):
+    """(whether a kind's limits ask for more, how far the eye may move before that changes)."""
+    if level >= limits[kind, ITERATIONS] or bend < limits[kind, BEND]:
+        return False, math.inf
+    if limits[kind, EDGE] <= 0.0:
+        return True, math.inf
+    reach = size / limits[kind, EDGE]
+    return reach > away, abs(reach - away)
 
 
 @lean

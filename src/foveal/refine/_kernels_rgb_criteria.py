@@ -14,14 +14,13 @@ from foveal.base.jit import lean
 from ._kernels_criteria import (
     BACK,
     BALL,
-    BEND,
-    EDGE,
     EYE,
     FRONT,
     ITERATIONS,
     PIXELS,
     PLANES,
     SILHOUETTE,
+    judge,
     trusted,
 )
 from ._kernels_rgb_address import LEVELS
@@ -86,13 +85,10 @@ def wants_edge(net, a, b, level, view, limits):
     margin = spread * (far + length)
     front, back = min(one, two) - margin, -max(one, two) - margin
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
-    # A facing changes as quickly as the eye moves at most, the margin as quickly as the spread says.
-    slack = min(slack, (max(front, back) if kind != SILHOUETTE else min(-front, -back)) / (1.0 + spread))
     # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
     bend = max(1.0 - (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]), 0.125 * spread * spread)
-    if level >= limits[kind, ITERATIONS] or bend < limits[kind, BEND]:
-        return False, trusted(slack, far)
-    if limits[kind, EDGE] > 0.0:
-        reach = view[PIXELS] * length / limits[kind, EDGE]
-        return reach > far, trusted(min(slack, abs(reach - far)), far)
-    return True, trusted(slack, far)
+    # A facing changes as quickly as the eye moves at most, the margin as quickly as the spread says.
+    ease = 1.0 / (1.0 + spread)
+    size = view[PIXELS] * length
+    answer, until = judge(limits, kind, level, bend, size, far, front * ease, back * ease)
+    return answer, trusted(min(slack, until), far)
