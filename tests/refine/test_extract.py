@@ -9,7 +9,7 @@ from foveal.refine.criteria import view_of
 from foveal.refine.extract import front_faces, frustum_faces, silhouette_faces
 from foveal.view.camera import Camera
 from refine import naive_filter as naive
-from refine.test_sqrt3 import SURFACES, around
+from refine.surfaces import SURFACES, around
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -12,7 +12,7 @@ from foveal.refine.cage import Cage
 from foveal.refine.filter import Sqrt3Filter
 from refine import naive_filter as naive
 from refine.naive_sqrt3 import subdivided
-from refine.test_sqrt3 import SURFACES, around, assert_surface, everywhere, turned
+from refine.surfaces import SURFACES, around, assert_surface, everywhere, turned
 
 FINE = Criteria(Region(4, 20.0), Region(6, 8.0))
 

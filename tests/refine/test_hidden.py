@@ -10,7 +10,7 @@ from foveal.refine import Criteria, Hidden, Region, Sqrt3
 from foveal.refine._kernels_hidden import is_hidden
 from foveal.refine.criteria import view_of
 from foveal.view.camera import Camera
-from refine.test_sqrt3 import assert_same, assert_surface
+from refine.surfaces import assert_same, assert_surface
 
 CAMERA = Camera.of([0, 0, 6], [0, 0, 0])
 CRITERIA = Criteria(Region(4, 6.0), Region(5, 4.0))

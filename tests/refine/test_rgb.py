@@ -1,76 +1,18 @@
 """RGB triangulations: complete they are Loop's or the butterfly's surface, and the view alone decides."""
 
-import math
-
 import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-import corpus
 from foveal.base.errors import FovealError
-from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain, tetrahedron, torus
+from foveal.mesh.shapes import bumpy_sphere, icosphere, tetrahedron
 from foveal.mesh.trimesh import TriMesh
 from foveal.refine import Criteria, Region, Rgb, by_distance, by_length, rgb
 from foveal.view.camera import Camera
 from refine.naive_rgb import Hierarchy
+from refine.surfaces import SURFACES, around, assert_same, assert_surface, edges_of, everywhere, turned
 
-SURFACES = {
-    "tetrahedron": tetrahedron,
-    "icosphere": lambda: icosphere(1),
-    "torus": lambda: torus(7, 5),
-    "bumpy": lambda: bumpy_sphere(2, seed=3),
-    "terrain": lambda: terrain(5),
-    "with_hole": corpus.MESHES["with_hole"],
-    "single_triangle": corpus.MESHES["single_triangle"],
-    "two_triangles": corpus.MESHES["two_triangles"],
-    "two_pieces": lambda: corpus.joined(icosphere(0), TriMesh(terrain(3).positions + 9, terrain(3).faces)),
-}
 CONVEX = {"tetrahedron": tetrahedron, "icosahedron": lambda: icosphere(0), "icosphere": lambda: icosphere(1)}
-
-
-def everywhere(level):
-    return Criteria(Region(level), Region(level), Region(level))
-
-
-def around(mesh, angle=0.0, height=0.3, closeness=1.0):
-    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
-    camera = Camera.around(low, high, direction=(math.sin(angle), height, math.cos(angle)))
-    eye = camera.target + (camera.position - camera.target) * closeness
-    return Camera.of(eye, camera.target)
-
-
-def turned(faces):
-    """The set of triangles, each beginning with its least vertex."""
-    return {tuple(np.roll(row, -np.argmin(row))) for row in faces.tolist()}
-
-
-def canonical(mesh):
-    """The triangles' corners, bit for bit, whatever the order of triangles and which corner is first."""
-    corners = mesh.positions[mesh.faces] + 0.0  # no negative zeros
-    names = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)[1].reshape(-1, 3)
-    first = names.argmin(axis=1)
-    order = (first[:, None] + np.arange(3)) % 3
-    rows = np.take_along_axis(corners, order[..., None], axis=1).reshape(-1, 9)
-    return rows[np.lexsort(rows.T)]
-
-
-def assert_same(a, b):
-    assert len(a.faces) == len(b.faces)
-    assert (canonical(a) == canonical(b)).all()
-
-
-def edges_of(faces):
-    return np.concatenate([faces[:, [k, (k + 1) % 3]] for k in range(3)])
-
-
-def assert_surface(mesh, base):
-    """Conforming and oriented, with the border, holes and pieces of the control mesh."""
-    halves = edges_of(mesh.faces)
-    assert len(np.unique(halves, axis=0)) == len(halves)
-    count = len(np.unique(np.sort(halves, axis=1), axis=0))
-    base_count = len(np.unique(np.sort(edges_of(base.faces), axis=1), axis=0))
-    euler = len(base.positions) - base_count + len(base.faces)
-    assert len(mesh.positions) - count + len(mesh.faces) == euler
 
 
 @pytest.mark.parametrize("scheme", ["loop", "butterfly"])

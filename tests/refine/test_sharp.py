@@ -14,7 +14,7 @@ from foveal.refine import Criteria, Region, Sqrt3
 from foveal.refine.sharp import sharp_edges
 from foveal.view.camera import Camera
 from refine.naive_sqrt3 import subdivided
-from refine.test_sqrt3 import SURFACES, around, assert_same, assert_surface, everywhere, turned
+from refine.surfaces import SURFACES, around, assert_same, assert_surface, everywhere, turned
 
 
 def edges_of(mesh):
