@@ -104,17 +104,68 @@ export function isWanted(
   const kind = front > 0 ? FRONT : back > 0 ? BACK : SILHOUETTE;
   // `low` changes as quickly as the eye moves at most, `high - low` by the normals' distance times that.
   const spread = level > 0 ? Math.sqrt(Math.max(2 - 2 * least, 0)) : 2;
-  const margin = kind === SILHOUETTE ? Math.min(-front, -back) : Math.max(front, back);
-  slack = Math.min(slack, margin / (1 + spread));
-  let answer = level < limits[kind]! && 1 - least >= limits[kind + BEND]!;
-  const edge = limits[kind + EDGE]!;
-  if (answer && edge > 0) {
-    const far = (view[PIXELS]! * longest) / edge;
-    slack = Math.min(slack, Math.abs(far - away));
-    answer = far > away;
-  }
-  SLACK[0] = trusted(slack, away);
+  const ease = 1 / (1 + spread);
+  const answer = judge(
+    limits,
+    kind,
+    level,
+    1 - least,
+    view[PIXELS]! * longest,
+    away,
+    front * ease,
+    back * ease,
+  );
+  SLACK[0] = trusted(Math.min(slack, MARGIN[0]!), away);
   return answer;
+}
+
+/** Of the last answers of `isCoarse` and `judge`: how far the eye may move before they change. */
+const MARGIN = new Float64Array(1);
+
+/**
+ * Whether a kind's limits ask for more; MARGIN says how far the eye may move before they do not, or do.
+ *
+ * `front` and `back` say how far the eye is, at least, from where this would be a front or no front any more, a back
+ * or no back any more. Another kind that says the same is none to beware of.
+ */
+function judge(
+  limits: Float64Array,
+  kind: number,
+  level: number,
+  bend: number,
+  size: number,
+  away: number,
+  front: number,
+  back: number,
+): boolean {
+  const answer = isCoarse(limits, kind, level, bend, size, away);
+  let margin = MARGIN[0]!;
+  for (let other = FRONT; other <= BACK; other += SILHOUETTE) {
+    if (other === kind) continue;
+    const until = other === FRONT ? -front : other === BACK ? -back : Math.max(front, back);
+    const isSame = isCoarse(limits, other, level, bend, size, away) === answer;
+    margin = Math.min(margin, isSame ? Math.max(until, MARGIN[0]!) : until);
+  }
+  MARGIN[0] = margin;
+  return answer;
+}
+
+/** Whether a kind's limits ask for more; MARGIN says how far the eye may move before that changes. */
+function isCoarse(
+  limits: Float64Array,
+  kind: number,
+  level: number,
+  bend: number,
+  size: number,
+  away: number,
+): boolean {
+  MARGIN[0] = Infinity;
+  if (level >= limits[kind]! || bend < limits[kind + BEND]!) return false;
+  const edge = limits[kind + EDGE]!;
+  if (edge <= 0) return true;
+  const far = size / edge;
+  MARGIN[0] = Math.abs(far - away);
+  return far > away;
 }
 
 /** Of a triangle; the squares of two of its edges are known. */
