@@ -1,5 +1,7 @@
 """A live scene for tests of refinements, and what they share: cameras, keys, sliders, compared pictures."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,21 @@ def slide(page, name, position):
         [f"set-{name}", position],
     )
     idle(page)
+
+
+def assert_as_asked(shown, refined, camera):
+    """The page shows the mesh that Python has for the same camera and CRITERIA."""
+    same = Camera.of(
+        camera["position"],
+        camera["target"],
+        up=camera["up"],
+        field_of_view=math.radians(camera["fieldOfViewDegrees"]),
+        width=WIDTH,
+        height=HEIGHT,
+        near=1e-3,
+    )
+    wanted = refined.update(same, criteria=CRITERIA).faces
+    # the page's own frame rounds the last digits of the camera, and decides by them now and then
+    assert shown["refinement"]["triangles"] == pytest.approx(wanted, rel=2e-3)
+    assert shown["triangles"] == shown["refinement"]["triangles"]
+    assert shown["refinement"]["threshold"] == 1

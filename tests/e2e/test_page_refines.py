@@ -1,25 +1,17 @@
 """A published control mesh is refined where the page looks, by the page: static files, no server of ours."""
 
-import math
-
 import pytest
 
 from e2e.page import idle, picture, stats
+from e2e.refined import CRITERIA, FRONT, HEIGHT, NEAR, PLAIN, WIDTH, assert_as_asked
 from e2e.static_server import StaticServer
 from foveal.mesh.shapes import bumpy_sphere
-from foveal.refine import Criteria, Region, Sqrt3
+from foveal.refine import Sqrt3
 from foveal.scene import Scene
 from foveal.scene.cage_file import write_cage
 from foveal.scene.publish import publish
 from foveal.scene.refinement import Refinement
 from foveal.scene.scene import Layer
-from foveal.view.camera import Camera
-
-WIDTH, HEIGHT = 640, 480
-CRITERIA = Criteria(Region(5, 12.0), Region(6, 6.0), Region(0))
-FRONT = {"position": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
-NEAR = {"position": [0.3, 0.2, 1.6], "target": [0.1, 0.1, 0.9], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
-PLAIN = "#v=1&n=0"
 
 
 def published(folder, viewer, refinement):
@@ -56,20 +48,7 @@ def test_the_page_makes_the_mesh_that_its_camera_asks_for(open_page):
     refined = Sqrt3(bumpy_sphere(2))
     for camera in (FRONT, NEAR, FRONT):
         shown = go(page, camera)
-        same = Camera.of(
-            camera["position"],
-            camera["target"],
-            up=camera["up"],
-            field_of_view=math.radians(camera["fieldOfViewDegrees"]),
-            width=WIDTH,
-            height=HEIGHT,
-            near=1e-3,
-        )
-        wanted = refined.update(same, criteria=CRITERIA).faces
-        # the page's own frame rounds the last digits of the camera, and decides by them now and then
-        assert shown["refinement"]["triangles"] == pytest.approx(wanted, rel=2e-3)
-        assert shown["triangles"] == shown["refinement"]["triangles"]
-        assert shown["refinement"]["threshold"] == 1
+        assert_as_asked(shown, refined, camera)
     assert sockets == []
 
 

@@ -3,12 +3,23 @@
 import math
 
 import numpy as np
-import pytest
 
 from e2e.page import idle, picture, stats
-from e2e.refined import CRITERIA, FRONT, HEIGHT, NEAR, PLAIN, WIDTH, cage, differs, go, press, site, slide
+from e2e.refined import (
+    FRONT,
+    HEIGHT,
+    NEAR,
+    PLAIN,
+    WIDTH,
+    assert_as_asked,
+    cage,
+    differs,
+    go,
+    press,
+    site,
+    slide,
+)
 from foveal.refine import Sqrt3
-from foveal.view.camera import Camera
 
 __all__ = ["cage", "site"]  # fixtures: in the place of the static files of the other tests
 
@@ -18,20 +29,7 @@ def test_the_page_has_the_mesh_that_its_camera_asks_for(open_page, cage):
     refined = Sqrt3(cage[0])
     for camera in (FRONT, NEAR, FRONT):
         shown = go(page, camera)
-        same = Camera.of(
-            camera["position"],
-            camera["target"],
-            up=camera["up"],
-            field_of_view=math.radians(camera["fieldOfViewDegrees"]),
-            width=WIDTH,
-            height=HEIGHT,
-            near=1e-3,
-        )
-        wanted = refined.update(same, criteria=CRITERIA).faces
-        # the page's own frame rounds the last digits of the camera, and decides by them now and then
-        assert shown["refinement"]["triangles"] == pytest.approx(wanted, rel=2e-3)
-        assert shown["triangles"] == shown["refinement"]["triangles"]
-        assert shown["refinement"]["threshold"] == 1
+        assert_as_asked(shown, refined, camera)
 
 
 def test_what_is_shown_is_smooth_and_where_it_belongs(open_page):

@@ -38,14 +38,17 @@ REFERENCES = {
 
 
 @pytest.mark.parametrize("level", [1, 2])
-@pytest.mark.parametrize(("scheme", "library"), REFERENCES)
 @pytest.mark.parametrize(
-    "name", ["tetrahedron", "octahedron", "cheburashka68", "cheburashka562", "opengrid_tri"]
+    ("name", "scheme", "library"),
+    [
+        (name, *reference)
+        for name in ("tetrahedron", "octahedron", "cheburashka68", "cheburashka562", "opengrid_tri")
+        for reference, (_, opened) in REFERENCES.items()
+        if name != "opengrid_tri" or name in opened  # no two libraries agree on the butterfly's borders
+    ],
 )
 def test_everywhere_it_is_what_libraries_make(name, level, scheme, library, shared_data):
-    bound, opened = REFERENCES[scheme, library]
-    if name == "opengrid_tri" and name not in opened:
-        pytest.skip("no two libraries agree on the butterfly's borders")
+    bound, _ = REFERENCES[scheme, library]
     data = np.load(shared_data(f"../reference/{library}_{name}_L{level}.npz"), allow_pickle=False)
     mesh = TriMesh.of(data["V0"], data["F0"])
     refined = Rgb(mesh, scheme=scheme)

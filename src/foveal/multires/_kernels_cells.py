@@ -4,8 +4,7 @@
 import numpy as np
 
 from foveal.base.jit import lean
-
-from ._kernels_surface import area_vector
+from foveal.mesh._kernels_area import area_vector
 
 MISSING = -1
 

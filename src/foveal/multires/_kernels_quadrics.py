@@ -8,8 +8,9 @@ A quadric is 11 numbers: xx xy xz yy yz zz x y z 1 of the summed squared plane d
 import math
 
 from foveal.base.jit import lean
+from foveal.mesh._kernels_area import area_vector
 
-from ._kernels_surface import BORDER, area_vector
+from ._kernels_surface import BORDER
 
 
 @lean

@@ -7,6 +7,7 @@ A half-edge has the number 3 f + k: edge k of face f, from its corner k to corne
 import math
 
 from foveal.base.jit import lean
+from foveal.mesh._kernels_area import area_vector
 
 #: Instead of a twin: no other face is on the edge; or others are, but each is another's twin.
 BORDER, CROWDED = -1, -2
@@ -118,23 +119,6 @@ def fan_exit(faces, f, v, is_left):
     """The edge of face f by which a turn around its vertex v leaves it."""
     corner = 0 if faces[f, 0] == v else (1 if faces[f, 1] == v else 2)
     return (corner + 2) % 3 if is_left else corner
-
-
-@lean
-def area_vector(positions, faces, f):
-    """(x, y, z): along the normal of face f, twice its area long."""
-    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-    ux, uy, uz = (
-        positions[b, 0] - positions[a, 0],
-        positions[b, 1] - positions[a, 1],
-        positions[b, 2] - positions[a, 2],
-    )
-    vx, vy, vz = (
-        positions[c, 0] - positions[a, 0],
-        positions[c, 1] - positions[a, 1],
-        positions[c, 2] - positions[a, 2],
-    )
-    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
 @lean

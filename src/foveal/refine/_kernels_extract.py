@@ -12,6 +12,7 @@ Based on: P. Alliez, N. Laurent, H. Sanson, F. Schmitt. Efficient view-dependent
 import numpy as np
 
 from foveal.base.jit import lean
+from foveal.mesh._kernels_area import area_vector
 
 from ._kernels_criteria import EYE, PLANES
 
@@ -43,26 +44,9 @@ def side(positions, corners, f, view):
 
 
 @lean
-def normal(positions, corners, f):
-    """(x, y, z): normal of face f, as long as twice its area."""
-    a, b, c = corners[f, 0], corners[f, 1], corners[f, 2]
-    ux, uy, uz = (
-        positions[b, 0] - positions[a, 0],
-        positions[b, 1] - positions[a, 1],
-        positions[b, 2] - positions[a, 2],
-    )
-    vx, vy, vz = (
-        positions[c, 0] - positions[a, 0],
-        positions[c, 1] - positions[a, 1],
-        positions[c, 2] - positions[a, 2],
-    )
-    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-
-
-@lean
 def is_front(positions, corners, f, view):
     """Whether the eye is on the outer side of face f; a face without area faces away."""
-    x, y, z = normal(positions, corners, f)
+    x, y, z = area_vector(positions, corners, f)
     a = corners[f, 0]
     return (
         x * (view[EYE] - positions[a, 0])

@@ -6,10 +6,11 @@ import math
 import numpy as np
 
 from foveal.base.jit import lean
+from foveal.mesh._kernels_area import area_vector
 
 from . import _kernels_extract as known
 from ._kernels_criteria import BACK, BEND, EDGE, EYE, FRONT, ITERATIONS, PIXELS, SILHOUETTE, THIRD
-from ._kernels_extract import AREA, NONE, STRIP, SWAP, normal
+from ._kernels_extract import AREA, NONE, STRIP, SWAP
 from ._kernels_filter import FACES, VERTICES, split, swap
 
 
@@ -29,12 +30,12 @@ def longest_edge(net, f, view):
 @lean
 def is_flat(net, f, limit):
     """Whether the normals of face f and of each face beside it differ by less: 1 - cos < limit."""
-    x, y, z = normal(net.positions, net.corners, f)
+    x, y, z = area_vector(net.positions, net.corners, f)
     length = math.sqrt(x * x + y * y + z * z)
     for k in range(3):
         n = np.int64(net.beside[f, k])
         if n != NONE:
-            a, b, c = normal(net.positions, net.corners, n)
+            a, b, c = area_vector(net.positions, net.corners, n)
             both = length * math.sqrt(a * a + b * b + c * c)
             if not both - (x * a + y * b + z * c) < limit * both:
                 return False
