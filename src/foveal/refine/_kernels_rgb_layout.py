@@ -21,8 +21,8 @@ GREEN, RED_LONG, RED_SHORT, BLUE = 0, 1, 2, 3
 FREE_CODE, FREE = 255, -1
 
 #: Flags of vertices: the edge it splits is split for itself; for finer ones; it meets the criteria; where it
-#: was born is known; its limit is known; it is in the mesh.
-WANTED, NEEDED, MEETS, BORN, LIMIT, PRESENT = 1, 2, 4, 8, 16, 32
+#: was born is known; its limit is known; it is in the mesh; its normal and spread are known.
+WANTED, NEEDED, MEETS, BORN, LIMIT, PRESENT, NORMAL = 1, 2, 4, 8, 16, 32, 64
 
 #: Places in `counts`: slots ever used, the first free ones, the queue, what there is, the clock of use.
 FACES, VERTICES, FREE_FACE, FREE_VERTEX, FIRST, WAITING = 0, 1, 2, 3, 4, 5

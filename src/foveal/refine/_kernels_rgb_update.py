@@ -1,10 +1,13 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
 
-An edge is wanted split if it meets the criteria and the splits that make it are wanted. It is needed split if
+An edge is wanted split if it meets the criteria and a split that makes it is wanted. It is needed split if
 it is wanted, or if a needed one's triangles take it: then an end or apex of that one was born on its level,
 and this is the edge which that vertex splits. Both read positions of uniform subdivision only, so the mesh
 depends on the view and not on the way to it.
+
+An edge inside a triangle is asked before it is there, too: a red face asks the one from its apex to the
+middle of its long edge, a blue face the one to the same middle. Their red edge's place keeps the answer.
 
 Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
 beginning, and `until` says up to which drift an answer holds.
@@ -17,7 +20,7 @@ import numpy as np
 from foveal.base.jit import lean
 
 from ._kernels_rgb_address import middle_key, slot_of
-from ._kernels_rgb_criteria import has_wanted_parents, wants_edge
+from ._kernels_rgb_criteria import finest, has_wanted_maker, wants_edge
 from ._kernels_rgb_known import ASK_BORN
 from ._kernels_rgb_layout import (
     BASE_COUNT,
@@ -32,6 +35,7 @@ from ._kernels_rgb_layout import (
     MERGES,
     NEEDED,
     NONE,
+    NORMAL,
     PRESENT,
     PRESENT_COUNT,
     SPLITS,
@@ -68,7 +72,8 @@ def split_edge(net, f, k):
     net.flags[v] |= PRESENT
     if net.flags[v] & BORN == 0:
         ensure(net, v, ASK_BORN)
-    set_normal(net, v)
+    if net.flags[v] & NORMAL == 0:
+        set_normal(net, v)
     vertex.until = 0.0
     split_topology(net, f, k, v)
     net.counts[SPLITS] += 1
@@ -138,11 +143,11 @@ def force(net, f, k, until, view, limits, drift):
 
 @lean
 def judge(net, v, view, limits, drift):
-    """Set a vertex's flags by its edge's parents and the criteria; what is known of the criteria is used."""
+    """Set a vertex's flags by its edge's makers and the criteria; what is known of the criteria is used."""
     vertex = net.vertices[v]
     a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
     level = np.int64(net.births[v]) - 1
-    if not has_wanted_parents(net, a, b, level):
+    if not has_wanted_maker(net, a, b, level):
         net.flags[v] &= ~WANTED
         return
     if vertex.until <= drift:
@@ -231,6 +236,61 @@ DONE, NO_ROOM, ENOUGH = 0, 1, 2
 
 
 @lean
+def ask_edge(net, f, k, level, view, limits, drift):
+    """Split the green edge k of a face if it is wanted: ENOUGH then, NO_ROOM for want of slots, else DONE."""
+    face = net.faces[f]
+    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+    if not has_wanted_maker(net, a, b, level):
+        return DONE
+    meets, slack = wants_edge(net, a, b, level, view, limits)
+    face.until[k] = drift + slack
+    if not meets:
+        return DONE
+    return ENOUGH if force(net, f, k, drift + slack, view, limits, drift) else NO_ROOM
+
+
+@lean
+def ask_inner(net, f, view, limits, drift):
+    """The same of the edge inside a red or blue face's triangle that is not there yet.
+
+    Only what makes it is split: then it is there, and asked.
+    """
+    g, j, v = across(net, f)
+    level = np.int64(net.births[v])
+    if level >= finest(limits) or net.flags[v] & WANTED == 0:
+        return DONE
+    u = middle_of(net, g, j)
+    meets, slack = wants_edge(net, v, u, level, view, limits)
+    net.faces[f].until[0] = drift + slack
+    if not meets:
+        return DONE
+    return ENOUGH if force(net, g, j, 0.0, view, limits, drift) else NO_ROOM
+
+
+@lean
+def across(net, f):
+    """(face, edge, vertex): the long edge of a red or blue face's triangle, and the middle facing it at f."""
+    g = np.int64(f)
+    if colour(net.faces[f].code) == BLUE:
+        g = np.int64(net.faces[f].beside[0])
+    j = np.int64(colour(net.faces[g].code))
+    return g, j, np.int64(net.faces[f].corners[2 if g != f else (j + 2) % 3])
+
+
+@lean
+def middle_of(net, f, k):
+    """The vertex that would split edge k of face f, with all that a criterion reads of it."""
+    face = net.faces[f]
+    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+    v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
+    if net.flags[v] & BORN == 0:
+        ensure(net, v, ASK_BORN)
+    if net.flags[v] & NORMAL == 0:
+        set_normal(net, v)
+    return v
+
+
+@lean
 def refine(net, view, limits, drift, most_splits, most_faces):
     """Split what is wanted, beginning with the faces in the queue, up to so many splits ever and faces."""
     while net.counts[WAITING] > 0:
@@ -245,21 +305,20 @@ def refine(net, view, limits, drift, most_splits, most_faces):
         for k in range(3):
             if face.until[k] > drift:
                 continue
-            # So it stays for red edges, for those asked from the other side, and for those whose makers are
-            # not wanted: should that change, it becomes 0.
+            # So it stays for those asked from the other side, and for those whose makers are not wanted:
+            # should that change, it becomes 0.
             face.until[k] = math.inf
             level = edge_level(face.code, k)
-            if level == NONE or not is_asked_at(face, k):
+            if level == NONE:
+                answer = ask_inner(net, f, view, limits, drift)
+            elif is_asked_at(face, k):
+                answer = ask_edge(net, f, k, level, view, limits, drift)
+            else:
                 continue
-            a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
-            if not has_wanted_parents(net, a, b, level):
-                continue
-            meets, slack = wants_edge(net, a, b, level, view, limits)
-            if meets:
+            if answer == NO_ROOM:
                 face.until[k] = 0.0
-                if not force(net, f, k, drift + slack, view, limits, drift):
-                    enqueue(net, f)
-                    return NO_ROOM
+                enqueue(net, f)
+                return NO_ROOM
+            if answer == ENOUGH:
                 break  # the face is another now, and in the queue
-            face.until[k] = drift + slack
     return DONE
