@@ -21,7 +21,7 @@ from ._kernels_rgb_layout import (
     find_edge,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
-from ._kernels_rgb_update import across, force, has_room, is_asked_at, middle_of
+from ._kernels_rgb_update import across, force, has_room, is_asked_at, middle_of, reconsider
 
 
 @lean
@@ -54,11 +54,12 @@ def describe_split(net, order, begin, ends, levels, middles):
 
 @lean
 def set_meets(net, order, answers):
-    """Note whether the edges that these vertices split meet the criteria; no drift makes that doubtful."""
+    """Note whether the edges that these vertices split meet the criteria; no drift makes that out of date."""
     for i in range(len(order)):
         v = order[i]
         net.flags[v] = (net.flags[v] | MEETS) if answers[i] else (net.flags[v] & ~MEETS)
         net.vertices[v].until = math.inf
+        reconsider(net, np.int64(v))
 
 
 @lean

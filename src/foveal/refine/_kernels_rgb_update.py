@@ -27,13 +27,13 @@ from ._kernels_rgb_layout import (
     BLUE,
     BORN,
     CHAIN,
+    DOUBTFUL,
     FACES,
     FACES_IN_USE,
     FREE_CODE,
     GREEN,
     MEETS,
     MERGES,
-    NEEDED,
     NONE,
     NORMAL,
     PRESENT,
@@ -76,16 +76,42 @@ def split_edge(net, f, k):
         set_normal(net, v)
     vertex.until = 0.0
     split_topology(net, f, k, v)
+    need(net, v, 1)
     net.counts[SPLITS] += 1
     net.counts[PRESENT_COUNT] += 1
     return v
 
 
 @lean
+def need(net, v, change):
+    """Count for the splits that v's triangles take that v takes them, or no longer."""
+    diamond, level = net.vertices[v].diamond, net.births[v] - 1
+    if level == 0:
+        return
+    for k in range(4):
+        u = np.int64(diamond[k])
+        if u != NONE and net.births[u] == level:
+            net.vertices[u].needed += change
+            if net.vertices[u].needed == 0:
+                doubt(net, u)
+
+
+@lean
+def doubt(net, v):
+    """Have it seen to whether v is to be in the mesh."""
+    vertex = net.vertices[v]
+    if not vertex.is_doubtful:
+        vertex.is_doubtful = True
+        vertex.next = net.counts[DOUBTFUL]
+        net.counts[DOUBTFUL] = v
+
+
+@lean
 def merge_vertex(net, v):
     """Take a mergeable vertex out of the mesh; what is known of it is kept."""
     merge_topology(net, v)
-    net.flags[v] &= ~(PRESENT | WANTED | NEEDED | MEETS)
+    need(net, v, -1)
+    net.flags[v] &= ~(PRESENT | WANTED | MEETS)
     net.vertices[v].around = NONE
     net.counts[MERGES] += 1
     net.counts[PRESENT_COUNT] -= 1
@@ -136,25 +162,21 @@ def force(net, f, k, until, view, limits, drift):
         if depth == 0 and until > 0.0:
             net.flags[v] |= WANTED | MEETS
             net.vertices[v].until = until
-        else:
-            judge(net, v, view, limits, drift)
+            continue
+        if net.vertices[v].until <= drift:
+            answer(net, v, view, limits, drift)
+        judge(net, v)
+        if net.flags[v] & WANTED == 0:
+            doubt(net, v)
     return True
 
 
 @lean
-def judge(net, v, view, limits, drift):
-    """Set a vertex's flags by its edge's makers and the criteria; what is known of the criteria is used."""
+def judge(net, v):
+    """Set whether a vertex is wanted, by its edge's makers and by what is known of the criteria."""
     vertex = net.vertices[v]
     a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
-    level = np.int64(net.births[v]) - 1
-    if not has_wanted_maker(net, a, b, level):
-        net.flags[v] &= ~WANTED
-        return
-    if vertex.until <= drift:
-        meets, slack = wants_edge(net, a, b, level, view, limits)
-        net.flags[v] = (net.flags[v] | MEETS) if meets else (net.flags[v] & ~MEETS)
-        vertex.until = drift + slack
-    if net.flags[v] & MEETS:
+    if net.flags[v] & MEETS and has_wanted_maker(net, a, b, np.int64(net.births[v]) - 1):
         net.flags[v] |= WANTED
     else:
         net.flags[v] &= ~WANTED
@@ -167,53 +189,104 @@ def has_room(net):
 
 
 @lean
-def review(net, order, begin, view, limits, drift):
-    """Set WANTED anew, and NEEDED to no, for the vertices of `order`, by rising birth, from the begin-th on.
+def review(net, begin, view, limits, drift):
+    """Ask anew where answers no longer hold, from a slot on, and see what follows of what is wanted.
 
-    Returns where it stopped for want of slots, or the end. Where a vertex becomes wanted, so may edges at it.
+    Returns where it stopped for want of slots, or the end.
     """
-    for i in range(begin, len(order)):
+    for i in range(max(begin, net.counts[BASE_COUNT]), net.counts[VERTICES]):
+        v = np.int64(i)
+        if net.flags[v] & PRESENT == 0 or net.vertices[v].until > drift:
+            continue
         if not has_room(net):
             return i
-        v = np.int64(order[i])
-        net.flags[v] &= ~NEEDED
-        was_wanted = net.flags[v] & WANTED
-        judge(net, v, view, limits, drift)
-        if net.flags[v] & WANTED and not was_wanted:
-            ask_around(net, v)
-    return len(order)
+        if answer(net, v, view, limits, drift):
+            reconsider(net, v)
+    return net.counts[VERTICES]
 
 
 @lean
-def sort_by_birth(net, starts, order):
-    """order: the vertices in the mesh born after level 0, by birth; returns how many."""
-    starts[:] = 0
-    first, count = net.counts[BASE_COUNT], net.counts[VERTICES]
-    for v in range(first, count):
-        if net.flags[v] & PRESENT:
-            starts[net.births[v] + 1] += 1
-    for i in range(1, len(starts)):
-        starts[i] += starts[i - 1]
-    for v in range(first, count):
-        if net.flags[v] & PRESENT:
-            order[starts[net.births[v]]] = v
-            starts[net.births[v]] += 1
-    return starts[len(starts) - 1]
+def answer(net, v, view, limits, drift):
+    """Ask whether the edge that v splits meets the criteria; whether that is news."""
+    vertex = net.vertices[v]
+    a, b, met = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1]), net.flags[v] & MEETS
+    meets, slack = wants_edge(net, a, b, np.int64(net.births[v]) - 1, view, limits)
+    net.flags[v] = (net.flags[v] | MEETS) if meets else (net.flags[v] & ~MEETS)
+    vertex.until = drift + slack
+    return (net.flags[v] & MEETS) != met
 
 
 @lean
-def coarsen(net, order):
-    """Take out the vertices that are neither wanted nor needed, from the last born to the first."""
-    for i in range(len(order) - 1, -1, -1):
-        v = np.int64(order[i])
-        if net.flags[v] & (WANTED | NEEDED) == 0:
-            merge_vertex(net, v)
+def reconsider(net, v):
+    """Set anew whether v is wanted, and what it makes if that is news.
+
+    Of what becomes wanted the edges are to be asked; what no longer is may go.
+    """
+    chain = net.counts
+    chain[CHAIN], top = v, 1
+    while top > 0:
+        top -= 1
+        w = chain[CHAIN + top]
+        was_wanted = net.flags[w] & WANTED
+        judge(net, w)
+        if net.flags[w] & WANTED == was_wanted:
             continue
-        diamond, level = net.vertices[v].diamond, net.births[v] - 1
-        for k in range(4):
-            u = diamond[k]
-            if level > 0 and u != NONE and net.births[u] == level:
-                net.flags[u] |= NEEDED
+        if was_wanted:
+            doubt(net, w)
+        else:
+            ask_around(net, w)
+        top = push_made(net, top, w)
+
+
+@lean
+def push_made(net, top, v):
+    """Put the vertices that split the edges which v makes onto the chain: all of those end at v."""
+    first = np.int64(net.vertices[v].around)
+    f = first
+    while f != NONE:
+        face = net.faces[f]
+        k = corner_at(face, v)
+        top = push_made_to(net, top, v, np.int64(face.corners[(k + 1) % 3]))
+        last = np.int64(face.corners[(k + 2) % 3])
+        f = np.int64(face.beside[(k + 2) % 3])
+        if f == first:
+            return top
+        if f == NONE:
+            top = push_made_to(net, top, v, last)
+    f = np.int64(net.faces[first].beside[corner_at(net.faces[first], v)])
+    while f != NONE:  # a border: the other way
+        face = net.faces[f]
+        k = corner_at(face, v)
+        top = push_made_to(net, top, v, np.int64(face.corners[(k + 1) % 3]))
+        f = np.int64(face.beside[k])
+    return top
+
+
+@lean
+def push_made_to(net, top, v, w):
+    """The same of the one edge that goes from v towards its neighbour w, which may split a piece of it."""
+    level = net.births[v] + 1
+    while net.births[w] >= level:
+        a, b = np.int64(net.vertices[w].diamond[0]), np.int64(net.vertices[w].diamond[1])
+        if v != a and v != b:
+            return top
+        if net.births[w] == level:
+            net.counts[CHAIN + top] = w
+            return top + 1
+        w = b if v == a else a
+    return top
+
+
+@lean
+def coarsen(net):
+    """Take out what is neither wanted nor needed, and what was needed by that alone."""
+    while net.counts[DOUBTFUL] != NONE:
+        v = net.counts[DOUBTFUL]
+        vertex = net.vertices[v]
+        net.counts[DOUBTFUL] = vertex.next
+        vertex.is_doubtful = False
+        if net.flags[v] & (PRESENT | WANTED) == PRESENT and vertex.needed == 0:
+            merge_vertex(net, v)
 
 
 @lean
