@@ -1,13 +1,11 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Which edges of an RGB triangulation are split for a view, and bringing the mesh there from wherever it is.
 
-An edge is wanted split if it meets the criteria and a split that makes it is wanted. It is needed split if
-it is wanted, or if a needed one's triangles take it: then an end or apex of that one was born on its level,
-and this is the edge which that vertex splits. Both read positions of uniform subdivision only, so the mesh
-depends on the view and not on the way to it.
-
-An edge inside a triangle is asked before it is there, too: a red face asks the one from its apex to the
-middle of its long edge, a blue face the one to the same middle. Their red edge's place keeps the answer.
+An edge is wanted split if it meets the criteria and is asked at all: `is_asked` says by which splits, which
+are coarser ones or halves of the same level. It is needed split if it is wanted, or if a needed one's
+triangles take it: then an end or apex of that one was born on its level, and this is the edge which that
+vertex splits. All that reads positions of uniform subdivision only, so the mesh depends on the view and not
+on the way to it.
 
 Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
 beginning, and `until` says up to which drift an answer holds.
@@ -20,7 +18,7 @@ import numpy as np
 from foveal.base.jit import lean
 
 from ._kernels_rgb_address import middle_key, slot_of
-from ._kernels_rgb_criteria import finest, has_wanted_maker, wants_edge
+from ._kernels_rgb_criteria import is_asked, wants_edge
 from ._kernels_rgb_known import ASK_BORN
 from ._kernels_rgb_layout import (
     BASE_COUNT,
@@ -39,6 +37,7 @@ from ._kernels_rgb_layout import (
     PRESENT,
     PRESENT_COUNT,
     SPLITS,
+    STACK,
     VERTICES,
     WAITING,
     WANTED,
@@ -160,14 +159,12 @@ def force(net, f, k, until, view, limits, drift):
         v = split_edge(net, g, i)
         depth -= 1
         if depth == 0 and until > 0.0:
-            net.flags[v] |= WANTED | MEETS
+            net.flags[v] |= MEETS
             net.vertices[v].until = until
-            continue
         if net.vertices[v].until <= drift:
             answer(net, v, view, limits, drift)
-        judge(net, v)
-        if net.flags[v] & WANTED == 0:
-            doubt(net, v)
+        doubt(net, v)
+        reconsider(net, v)
     return True
 
 
@@ -176,7 +173,7 @@ def judge(net, v):
     """Set whether a vertex is wanted, by its edge's makers and by what is known of the criteria."""
     vertex = net.vertices[v]
     a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
-    if net.flags[v] & MEETS and has_wanted_maker(net, a, b, np.int64(net.births[v]) - 1):
+    if net.flags[v] & MEETS and is_asked(net, a, b, np.int64(net.births[v]) - 1):
         net.flags[v] |= WANTED
     else:
         net.flags[v] &= ~WANTED
@@ -218,15 +215,11 @@ def answer(net, v, view, limits, drift):
 
 @lean
 def reconsider(net, v):
-    """Set anew whether v is wanted, and what it makes if that is news.
-
-    Of what becomes wanted the edges are to be asked; what no longer is may go.
-    """
-    chain = net.counts
-    chain[CHAIN], top = v, 1
+    """Set anew whether v is wanted, and all that follows if that is news."""
+    net.counts[STACK], top = v, 1
     while top > 0:
         top -= 1
-        w = chain[CHAIN + top]
+        w = net.counts[STACK + top]
         was_wanted = net.flags[w] & WANTED
         judge(net, w)
         if net.flags[w] & WANTED == was_wanted:
@@ -236,6 +229,25 @@ def reconsider(net, v):
         else:
             ask_around(net, w)
         top = push_made(net, top, w)
+        top = take(net, top, w, -1 if was_wanted else 1)
+
+
+@lean
+def take(net, top, v, change):
+    """Count for what the split v of a half edge takes that a wanted half does, or no longer."""
+    diamond, level = net.vertices[v].diamond, net.births[v] - 1
+    if level == 0 or (net.births[diamond[0]] == level and net.births[diamond[1]] == level):
+        return top
+    for k in range(4):
+        u = np.int64(diamond[k])
+        if u != NONE and net.births[u] == level:
+            before = net.vertices[u].halves
+            net.vertices[u].halves = before + change
+            if before == 0:
+                ask_around(net, u)
+            if before == 0 or before + change == 0:
+                top = push_made(net, top, u)
+    return top
 
 
 @lean
@@ -271,7 +283,7 @@ def push_made_to(net, top, v, w):
         if v != a and v != b:
             return top
         if net.births[w] == level:
-            net.counts[CHAIN + top] = w
+            net.counts[STACK + top] = w
             return top + 1
         w = b if v == a else a
     return top
@@ -299,68 +311,13 @@ def enqueue_expired(net, drift):
 
 
 @lean
-def is_asked_at(face, k):
+def is_from_here(face, k):
     """Whether it is this face that asks its green edge k: each edge is asked from one side only."""
     return face.beside[k] == NONE or face.corners[k] < face.corners[(k + 1) % 3]
 
 
 #: How `refine` ended.
 DONE, NO_ROOM, ENOUGH = 0, 1, 2
-
-
-@lean
-def ask_edge(net, f, k, level, view, limits, drift):
-    """Split the green edge k of a face if it is wanted: ENOUGH then, NO_ROOM for want of slots, else DONE."""
-    face = net.faces[f]
-    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
-    if not has_wanted_maker(net, a, b, level):
-        return DONE
-    meets, slack = wants_edge(net, a, b, level, view, limits)
-    face.until[k] = drift + slack
-    if not meets:
-        return DONE
-    return ENOUGH if force(net, f, k, drift + slack, view, limits, drift) else NO_ROOM
-
-
-@lean
-def ask_inner(net, f, view, limits, drift):
-    """The same of the edge inside a red or blue face's triangle that is not there yet.
-
-    Only what makes it is split: then it is there, and asked.
-    """
-    g, j, v = across(net, f)
-    level = np.int64(net.births[v])
-    if level >= finest(limits) or net.flags[v] & WANTED == 0:
-        return DONE
-    u = middle_of(net, g, j)
-    meets, slack = wants_edge(net, v, u, level, view, limits)
-    net.faces[f].until[0] = drift + slack
-    if not meets:
-        return DONE
-    return ENOUGH if force(net, g, j, 0.0, view, limits, drift) else NO_ROOM
-
-
-@lean
-def across(net, f):
-    """(face, edge, vertex): the long edge of a red or blue face's triangle, and the middle facing it at f."""
-    g = np.int64(f)
-    if colour(net.faces[f].code) == BLUE:
-        g = np.int64(net.faces[f].beside[0])
-    j = np.int64(colour(net.faces[g].code))
-    return g, j, np.int64(net.faces[f].corners[2 if g != f else (j + 2) % 3])
-
-
-@lean
-def middle_of(net, f, k):
-    """The vertex that would split edge k of face f, with all that a criterion reads of it."""
-    face = net.faces[f]
-    a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
-    v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
-    if net.flags[v] & BORN == 0:
-        ensure(net, v, ASK_BORN)
-    if net.flags[v] & NORMAL == 0:
-        set_normal(net, v)
-    return v
 
 
 @lean
@@ -378,20 +335,21 @@ def refine(net, view, limits, drift, most_splits, most_faces):
         for k in range(3):
             if face.until[k] > drift:
                 continue
-            # So it stays for those asked from the other side, and for those whose makers are not wanted:
-            # should that change, it becomes 0.
+            # So it stays for red edges, for those asked from the other side, and for those that are not
+            # asked: should that change, it becomes 0.
             face.until[k] = math.inf
             level = edge_level(face.code, k)
-            if level == NONE:
-                answer = ask_inner(net, f, view, limits, drift)
-            elif is_asked_at(face, k):
-                answer = ask_edge(net, f, k, level, view, limits, drift)
-            else:
+            if level == NONE or not is_from_here(face, k):
                 continue
-            if answer == NO_ROOM:
+            a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
+            if not is_asked(net, a, b, level):
+                continue
+            meets, slack = wants_edge(net, a, b, level, view, limits)
+            if meets:
                 face.until[k] = 0.0
-                enqueue(net, f)
-                return NO_ROOM
-            if answer == ENOUGH:
+                if not force(net, f, k, drift + slack, view, limits, drift):
+                    enqueue(net, f)
+                    return NO_ROOM
                 break  # the face is another now, and in the queue
+            face.until[k] = drift + slack
     return DONE
