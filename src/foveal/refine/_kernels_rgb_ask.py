@@ -29,7 +29,7 @@ def describe(net, a, b, level, v, i, ends, levels, middles):
     """Write the i-th edge."""
     ensure_at(net, a, level)
     ensure_at(net, b, level)
-    if net.flags[v] & BORN == 0:
+    if net.vertices[v].flags & BORN == 0:
         ensure(net, v, ASK_BORN)
     ends[i, 0, 0], ends[i, 0, 1], ends[i, 0, 2] = position(net, a, level)
     ends[i, 1, 0], ends[i, 1, 1], ends[i, 1, 2] = position(net, b, level)
@@ -45,10 +45,8 @@ def describe_split(net, order, begin, ends, levels, middles):
         if not has_room(net):
             return i
         v = np.int64(order[i])
-        d = net.vertices[v].diamond
-        describe(
-            net, np.int64(d[0]), np.int64(d[1]), np.int64(net.births[v]) - 1, v, i, ends, levels, middles
-        )
+        d, level = net.vertices[v].diamond, np.int64(net.vertices[v].birth) - 1
+        describe(net, np.int64(d[0]), np.int64(d[1]), level, v, i, ends, levels, middles)
     return len(order)
 
 
@@ -57,8 +55,9 @@ def set_meets(net, order, answers):
     """Note whether the edges that these vertices split meet the criteria; no drift makes that out of date."""
     for i in range(len(order)):
         v = order[i]
-        net.flags[v] = (net.flags[v] | MEETS) if answers[i] else (net.flags[v] & ~MEETS)
-        net.vertices[v].until = math.inf
+        vertex = net.vertices[v]
+        vertex.flags = (vertex.flags | MEETS) if answers[i] else (vertex.flags & ~MEETS)
+        vertex.until = math.inf
         reconsider(net, np.int64(v))
 
 

@@ -39,10 +39,10 @@ def is_asked(net, a, b, level):
     """
     if level == 0:
         return True
-    one, two = net.flags[a] & WANTED != 0, net.flags[b] & WANTED != 0
-    if net.births[a] != level:
+    one, two = net.vertices[a].flags & WANTED != 0, net.vertices[b].flags & WANTED != 0
+    if net.vertices[a].birth != level:
         return two
-    if net.births[b] != level:
+    if net.vertices[b].birth != level:
         return one
     return (one and (two or net.vertices[b].halves > 0)) or (two and net.vertices[a].halves > 0)
 
@@ -51,9 +51,9 @@ def is_asked(net, a, b, level):
 def spread_of(net, a, b, level):
     """How much normals vary about an edge and as much again: of what its newest ends were born between."""
     spread = 0.0
-    if net.births[a] == level:
+    if net.vertices[a].birth == level:
         spread = max(spread, net.vertices[a].spread)
-    if net.births[b] == level:
+    if net.vertices[b].birth == level:
         spread = max(spread, net.vertices[b].spread)
     return spread
 

@@ -68,10 +68,10 @@ def split_edge(net, f, k):
     v = slot_of(net, middle_key(net, np.int64(face.base), a, b))
     vertex = net.vertices[v]
     vertex.diamond[0], vertex.diamond[1], vertex.diamond[2], vertex.diamond[3] = a, b, c, d
-    net.flags[v] |= PRESENT
-    if net.flags[v] & BORN == 0:
+    net.vertices[v].flags |= PRESENT
+    if net.vertices[v].flags & BORN == 0:
         ensure(net, v, ASK_BORN)
-    if net.flags[v] & NORMAL == 0:
+    if net.vertices[v].flags & NORMAL == 0:
         set_normal(net, v)
     vertex.until = 0.0
     split_topology(net, f, k, v)
@@ -84,12 +84,12 @@ def split_edge(net, f, k):
 @lean
 def need(net, v, change):
     """Count for the splits that v's triangles take that v takes them, or no longer."""
-    diamond, level = net.vertices[v].diamond, net.births[v] - 1
+    diamond, level = net.vertices[v].diamond, net.vertices[v].birth - 1
     if level == 0:
         return
     for k in range(4):
         u = np.int64(diamond[k])
-        if u != NONE and net.births[u] == level:
+        if u != NONE and net.vertices[u].birth == level:
             net.vertices[u].needed += change
             if net.vertices[u].needed == 0:
                 doubt(net, u)
@@ -110,7 +110,7 @@ def merge_vertex(net, v):
     """Take a mergeable vertex out of the mesh; what is known of it is kept."""
     merge_topology(net, v)
     need(net, v, -1)
-    net.flags[v] &= ~(PRESENT | WANTED | MEETS)
+    net.vertices[v].flags &= ~(PRESENT | WANTED | MEETS)
     net.vertices[v].around = NONE
     net.counts[MERGES] += 1
     net.counts[PRESENT_COUNT] -= 1
@@ -159,7 +159,7 @@ def force(net, f, k, until, view, limits, drift):
         v = split_edge(net, g, i)
         depth -= 1
         if depth == 0 and until > 0.0:
-            net.flags[v] |= MEETS
+            net.vertices[v].flags |= MEETS
             net.vertices[v].until = until
         if net.vertices[v].until <= drift:
             answer(net, v, view, limits, drift)
@@ -173,10 +173,10 @@ def judge(net, v):
     """Set whether a vertex is wanted, by its edge's makers and by what is known of the criteria."""
     vertex = net.vertices[v]
     a, b = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1])
-    if net.flags[v] & MEETS and is_asked(net, a, b, np.int64(net.births[v]) - 1):
-        net.flags[v] |= WANTED
+    if net.vertices[v].flags & MEETS and is_asked(net, a, b, np.int64(net.vertices[v].birth) - 1):
+        net.vertices[v].flags |= WANTED
     else:
-        net.flags[v] &= ~WANTED
+        net.vertices[v].flags &= ~WANTED
 
 
 @lean
@@ -193,7 +193,7 @@ def review(net, begin, view, limits, drift):
     """
     for i in range(max(begin, net.counts[BASE_COUNT]), net.counts[VERTICES]):
         v = np.int64(i)
-        if net.flags[v] & PRESENT == 0 or net.vertices[v].until > drift:
+        if net.vertices[v].flags & PRESENT == 0 or net.vertices[v].until > drift:
             continue
         if not has_room(net):
             return i
@@ -206,11 +206,11 @@ def review(net, begin, view, limits, drift):
 def answer(net, v, view, limits, drift):
     """Ask whether the edge that v splits meets the criteria; whether that is news."""
     vertex = net.vertices[v]
-    a, b, met = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1]), net.flags[v] & MEETS
-    meets, slack = wants_edge(net, a, b, np.int64(net.births[v]) - 1, view, limits)
-    net.flags[v] = (net.flags[v] | MEETS) if meets else (net.flags[v] & ~MEETS)
+    a, b, met = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1]), net.vertices[v].flags & MEETS
+    meets, slack = wants_edge(net, a, b, np.int64(net.vertices[v].birth) - 1, view, limits)
+    net.vertices[v].flags = (net.vertices[v].flags | MEETS) if meets else (net.vertices[v].flags & ~MEETS)
     vertex.until = drift + slack
-    return (net.flags[v] & MEETS) != met
+    return (net.vertices[v].flags & MEETS) != met
 
 
 @lean
@@ -220,9 +220,9 @@ def reconsider(net, v):
     while top > 0:
         top -= 1
         w = net.counts[STACK + top]
-        was_wanted = net.flags[w] & WANTED
+        was_wanted = net.vertices[w].flags & WANTED
         judge(net, w)
-        if net.flags[w] & WANTED == was_wanted:
+        if net.vertices[w].flags & WANTED == was_wanted:
             continue
         if was_wanted:
             doubt(net, w)
@@ -235,12 +235,12 @@ def reconsider(net, v):
 @lean
 def take(net, top, v, change):
     """Count for what the split v of a half edge takes that a wanted half does, or no longer."""
-    diamond, level = net.vertices[v].diamond, net.births[v] - 1
-    if level == 0 or (net.births[diamond[0]] == level and net.births[diamond[1]] == level):
+    diamond, level = net.vertices[v].diamond, net.vertices[v].birth - 1
+    if level == 0 or (net.vertices[diamond[0]].birth == level and net.vertices[diamond[1]].birth == level):
         return top
     for k in range(4):
         u = np.int64(diamond[k])
-        if u != NONE and net.births[u] == level:
+        if u != NONE and net.vertices[u].birth == level:
             before = net.vertices[u].halves
             net.vertices[u].halves = before + change
             if before == 0:
@@ -277,12 +277,12 @@ def push_made(net, top, v):
 @lean
 def push_made_to(net, top, v, w):
     """The same of the one edge that goes from v towards its neighbour w, which may split a piece of it."""
-    level = net.births[v] + 1
-    while net.births[w] >= level:
+    level = net.vertices[v].birth + 1
+    while net.vertices[w].birth >= level:
         a, b = np.int64(net.vertices[w].diamond[0]), np.int64(net.vertices[w].diamond[1])
         if v != a and v != b:
             return top
-        if net.births[w] == level:
+        if net.vertices[w].birth == level:
             net.counts[STACK + top] = w
             return top + 1
         w = b if v == a else a
@@ -297,7 +297,7 @@ def coarsen(net):
         vertex = net.vertices[v]
         net.counts[DOUBTFUL] = vertex.next
         vertex.is_doubtful = False
-        if net.flags[v] & (PRESENT | WANTED) == PRESENT and vertex.needed == 0:
+        if net.vertices[v].flags & (PRESENT | WANTED) == PRESENT and vertex.needed == 0:
             merge_vertex(net, v)
 
 
