@@ -2,6 +2,9 @@
 
 import json
 import math
+import signal
+import sys
+import time
 
 import pytest
 
@@ -191,3 +194,24 @@ def test_what_does_not_go_together_is_said(run, cage, tmp_path, monkeypatch):
     assert "the input itself" in answer.stderr
     assert run("refine", cage, "-o", tmp_path / "a.stl").exit_code == 2
     assert run("refine", tmp_path / "none.obj", "-o", tmp_path / "a.ply").exit_code == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one child alone")
+def test_ctrl_c_ends_a_huge_refinement_at_once(spawn, cage, tmp_path):
+    child = spawn("refine", cage, "-o", tmp_path / "out" / "a.ply", "--iterations", "12", "--edge-px", "0")
+    assert child.stderr.readline() == "Refining ...\n"
+    time.sleep(1.0)  # to be within the work
+    begin = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    out, _ = child.communicate(timeout=60)
+    assert (child.returncode, out) == (130, "")
+    assert time.monotonic() - begin < 1.5
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_too_much_everywhere_is_said_before(run, cage, tmp_path):
+    answer = run("refine", cage, "-o", tmp_path / "a.ply", "--everywhere", "--iterations", "12")
+    assert answer.exit_code == 1
+    for word in ("170,061,120 triangles", "--budget", "--iterations", "--everywhere"):
+        assert word in answer.stderr
+    assert not (tmp_path / "a.ply").exists()

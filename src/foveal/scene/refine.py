@@ -1,10 +1,8 @@
 """A control mesh refined for a view, or everywhere, as a mesh."""
 
 import os
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Unpack
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
@@ -17,13 +15,13 @@ from .cage_file import ControlMesh, is_cage, read_cage
 from .export import refuse_mesh_output, write_mesh
 from .prepare import refuse_shaping
 from .read import read
-from .refinement import Refinement, RefineOptions, chosen
+from .refine_size import everywhere as everywhere_count
+from .refine_size import most_triangles
+from .refined import refined
+from .refinement import RefineOptions, chosen
 from .render import home, read_camera
 
-if TYPE_CHECKING:
-    from foveal.refine import Update
-
-__all__ = ["refine", "refined"]
+__all__ = ["refine"]
 
 
 def refine(
@@ -57,7 +55,7 @@ def refine(
     up : "x", "y" or "z", optional
         Of a mesh, the axis that points up, where it is not the format's own.
     progress : Progress
-        Told that it is done.
+        Told how far it is.
     **options
         See `RefineOptions`. By default what the file says; of any other mesh √3 with the default criteria.
 
@@ -69,7 +67,8 @@ def refine(
     Raises
     ------
     FovealError
-        If the source is no oriented surface, or a file cannot be read or written.
+        If the source is no oriented surface, a file cannot be read or written, or there would be more
+        triangles than memory holds, or than 50 million.
 
     Examples
     --------
@@ -81,55 +80,17 @@ def refine(
     source = checked(source)
     if output is not None:
         refuse_mesh_output(Path(output), source)
-    with progress.stage("Refining", 1) as stage:
-        cage = _cage(source, up, options)
-        name = "mesh" if isinstance(source, TriMesh) else str(source)
-        if isinstance(camera, (str, os.PathLike)):
-            camera = read_camera(camera)
-        if everywhere:
-            mesh = _everywhere(cage, name)
-        else:
-            eye = camera or home([cage.mesh.positions], up=cage.up)
-            mesh = refined(cage.mesh, cage.refinement, eye, has_hidden=not visible_only, name=name)
-        stage.advance(1)
+    name = "mesh" if isinstance(source, TriMesh) else str(source)
+    if isinstance(camera, (str, os.PathLike)):
+        camera = read_camera(camera)
+    cage = _cage(source, up, options)
+    if everywhere:
+        cage = _everywhere(cage, name)
+    eye = camera or home([cage.mesh.positions], up=cage.up)
+    mesh = refined(cage, eye, has_hidden=not visible_only, name=name, progress=progress)
     if output is not None:
         write_mesh(mesh, Path(output), cage.up)
     return mesh
-
-
-def refined(
-    mesh: TriMesh,
-    refinement: Refinement,
-    camera: Camera,
-    /,
-    *,
-    has_hidden: bool = True,
-    name: str = "mesh",
-) -> TriMesh:
-    """A control mesh refined for one view, within its budget, with or without front faces that are hidden."""
-    from foveal.refine import Sqrt3
-    from foveal.refine.hidden import Hidden
-    from foveal.refine.pace import update_within
-    from foveal.refine.scheme import refiner
-
-    live = refiner(mesh, scheme=refinement.scheme, name=name)
-    update: Callable[..., Update] = partial(live.update, camera)
-
-    def within(**options: Any) -> None:
-        update_within(
-            lambda criteria: update(criteria=criteria, **options).faces,
-            refinement.criteria,
-            least=len(mesh.faces),
-            budget=refinement.budget,
-        )
-
-    within()
-    if has_hidden:
-        return live.mesh(positions=refinement.positions)
-    if not isinstance(live, Sqrt3):
-        raise FovealError(f"{name}: what is hidden can be left out by sqrt3 only. Choose that.")
-    within(hidden=Hidden.behind(live.mesh(), camera))
-    return live.mesh(positions=refinement.positions)
 
 
 def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> ControlMesh:
@@ -150,10 +111,25 @@ def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> Con
     return ControlMesh(weld(mesh)[0], refinement, up_of({"up": up}))
 
 
-def _everywhere(cage: ControlMesh, name: str) -> TriMesh:
-    """Uniform refinement: of all that a camera sees which sees all."""
+def _everywhere(cage: ControlMesh, name: str) -> ControlMesh:
+    """To be refined uniformly: all, for a camera that sees all.
+
+    Raises
+    ------
+    FovealError
+        If that is too much, which is known before.
+    """
     from foveal.refine import Criteria, Region
 
-    region = Region(cage.refinement.criteria.front.iterations)
-    refinement = cage.refinement.chosen({"criteria": Criteria(region, region, region)})
-    return refined(cage.mesh, refinement, home([cage.mesh.positions], up=cage.up), name=name)
+    refinement = cage.refinement
+    iterations = refinement.criteria.front.iterations
+    count = everywhere_count(len(cage.mesh.faces), refinement.scheme, iterations)
+    most = most_triangles(refinement.scheme)
+    if count > most and not refinement.budget:
+        raise FovealError(
+            f"{name}: {iterations} iterations everywhere are {count:,} triangles, more than the {most:,} "
+            "that would do here. Give a --budget, fewer --iterations, or a camera in place of --everywhere."
+        )
+    region = Region(iterations)
+    uniform = refinement.chosen({"criteria": Criteria(region, region, region)})
+    return ControlMesh(cage.mesh, uniform, cage.up)
