@@ -5,12 +5,15 @@ import math
 import signal
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
+from foveal import TriMesh
 from foveal.mesh.io import read_mesh, write_ply
-from foveal.mesh.shapes import bumpy_sphere
+from foveal.mesh.shapes import bumpy_sphere, icosphere
 from foveal.refine import Criteria, Region
+from foveal.scene import read_scene
 from foveal.scene.cage_file import read_cage
 
 
@@ -27,6 +30,21 @@ def viewer(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "index.html").write_text("<!doctype html>")
     monkeypatch.setattr("foveal.scene.viewer_files._BUILT", folder)
+
+
+class _Server:
+    """Serves nothing, and is told at once to end."""
+
+    url = "http://here/"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def wait(self):
+        pass
 
 
 def result(answer):
@@ -97,6 +115,43 @@ def test_a_criterion_leaves_the_others_as_they_are_by_default(run, cage, tmp_pat
     assert (found.silhouette, found.back) == (usual.silhouette, usual.back)
 
 
+def test_a_criterion_leaves_the_others_as_the_file_has_them(run, cage, tmp_path, monkeypatch, viewer):
+    kept = ("--iterations", "2", "--edge-px", "3", "--silhouette-iterations", "5", "--bend", "4")
+    path = tmp_path / "cage.fov"
+    assert run("build", cage, "-o", path, "--scheme", "sqrt3", *kept).exit_code == 0
+    own = read_cage(path).refinement
+    answer = run("publish", path, "-o", tmp_path / "site", "--edge-px", "1", "--back-iterations", "2")
+    assert answer.exit_code == 0, answer.stderr
+    found = read_scene(tmp_path / "site" / "scene.json").layers[0].refinement
+    assert found.criteria.front == replace(own.criteria.front, edge_px=1.0)
+    assert found.criteria.silhouette == own.criteria.silhouette
+    assert found.criteria.back == replace(own.criteria.back, iterations=2)
+    assert (found.positions, found.budget) == (own.positions, own.budget)
+
+
+def test_what_is_inside_out_is_told_once(run, tmp_path, monkeypatch, viewer):
+    ball, path = icosphere(1), tmp_path / "cave.ply"
+    write_ply(TriMesh(ball.positions, ball.faces[:, ::-1].copy()), path)
+    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: _Server())
+    fov = tmp_path / "cave.fov"
+    for words in (
+        ("build", path, "-o", fov, "--scheme", "sqrt3"),
+        ("refine", path, "-o", tmp_path / "a.ply"),
+        ("refine", fov, "-o", tmp_path / "b.ply"),
+        ("view", path, "--scheme", "sqrt3", "--no-browser"),
+        ("view", path, "--scheme", "sqrt3", "--no-browser"),  # from the cache
+        ("view", fov, "--no-browser"),
+        ("publish", fov, "-o", tmp_path / "site"),
+        ("view", tmp_path / "site" / "scene.json", "--no-browser"),
+    ):
+        answer = run(*words)
+        assert answer.exit_code == 0, answer.stderr
+        assert answer.stderr.count("inside out") == 1, words
+        assert "Reverse the corners" in answer.stderr
+    write_ply(ball, path)
+    assert "inside out" not in run("refine", path, "-o", tmp_path / "c.ply").stderr
+
+
 def test_build_as_json_and_info_and_check(run, cage, tmp_path):
     facts = result(run("build", cage, "--scheme", "sqrt3", "--json"))
     assert (facts["triangles"], facts["scheme"], facts["welded"]) == (320, "sqrt3", 0)
@@ -111,21 +166,9 @@ def test_build_as_json_and_info_and_check(run, cage, tmp_path):
 def test_view_and_publish_take_them(run, cage, tmp_path, monkeypatch, viewer):
     served = []
 
-    class Server:
-        url = "http://here/"
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            pass
-
-        def wait(self):
-            pass
-
     def start(scene, **_):
         served.append(scene.layers[0].refinement)
-        return Server()
+        return _Server()
 
     monkeypatch.setattr("foveal.server.view.start", start)
     words = ("--scheme", "sqrt3", "--budget", "700", "--rate", "30", "--no-browser")

@@ -5,7 +5,7 @@ import inspect
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -40,7 +40,6 @@ from .result import print_json, print_lines
 
 if TYPE_CHECKING:
     from foveal.base.tasks import Executor
-    from foveal.refine import Criteria
     from foveal.scene.build import BuildOptions
     from foveal.scene.refinement import RefineOptions
 
@@ -154,31 +153,25 @@ def refining(
     positions: Positions = None,
     budget: Budget = None,
 ) -> "RefineOptions":
-    """How a control mesh is refined; what is not chosen is as in `Criteria`, once anything of it is."""
-    silhouette = (silhouette_iterations, silhouette_edge_px, silhouette_bend)
-    regions = {"front": (iterations, edge_px, bend), "silhouette": silhouette, "back": (back_iterations,)}
+    """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
+    radians = [None if degrees is None else math.radians(degrees) for degrees in (bend, silhouette_bend)]
+    silhouette = (silhouette_iterations, silhouette_edge_px, radians[1])
+    regions = {
+        "front": (iterations, edge_px, radians[0]),
+        "silhouette": silhouette,
+        "back": (back_iterations,),
+    }
     names = ("iterations", "edge_px", "bend")
-    given: dict[str, dict[str, Any]] = {k: dict(zip(names, v, strict=False)) for k, v in regions.items()}
-    has_criteria = any(value is not None for region in given.values() for value in region.values())
+    criteria = {
+        region: {name: value for name, value in zip(names, values, strict=False) if value is not None}
+        for region, values in regions.items()
+    }
     return {
         "scheme": scheme and scheme.value,
-        "criteria": _criteria(given) if has_criteria else None,
+        "criteria": criteria if any(criteria.values()) else None,
         "positions": positions and positions.value,
         "budget": budget,
     }
-
-
-def _criteria(given: dict[str, dict[str, Any]]) -> "Criteria":
-    """The default criteria with what was given, angles in degrees, in place of their own."""
-    from foveal.refine import Criteria
-
-    criteria = Criteria()
-    for name, values in given.items():
-        chosen = {key: value for key, value in values.items() if value is not None}
-        if "bend" in chosen:
-            chosen["bend"] = math.radians(chosen["bend"])
-        criteria = replace(criteria, **{name: replace(getattr(criteria, name), **chosen)})
-    return criteria
 
 
 @contextmanager

@@ -7,6 +7,8 @@ import threading
 from io import TextIOWrapper
 from types import FrameType
 
+from . import interrupts
+
 __all__ = ["run"]
 
 
@@ -16,6 +18,7 @@ def run() -> None:
         number = getattr(signal, name, None)  # Windows has but one of them
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _end)
+    interrupts.listen()
     for stream in (sys.stdout, sys.stderr):  # a name that cannot be said is spelled, and never an error
         if isinstance(stream, TextIOWrapper):  # None where it is closed
             stream.reconfigure(errors="backslashreplace")

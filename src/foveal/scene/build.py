@@ -139,7 +139,9 @@ def _build_cage(
 ) -> CageReport:
     """Keep a mesh as a control mesh."""
     from foveal.base.jit import is_cold
+    from foveal.mesh.topology import weld
 
+    from .facing import tell_inside_out
     from .read import read
 
     name = "mesh" if isinstance(mesh, TriMesh) else str(mesh)
@@ -156,6 +158,7 @@ def _build_cage(
     report = write_cage(cage, output, refinement=refinement, up=up, name=name)
     if report.welded:
         progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
+    tell_inside_out(weld(cage)[0], name, progress)
     return report
 
 

@@ -22,9 +22,10 @@ from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
 from .build import BuildOptions, Source, build, checked, title_of
-from .cage_file import is_cage
+from .cage_file import is_cage, read_cage
+from .facing import Once, tell_inside_out
 from .refinement import RefineOptions, chosen
-from .scene import Scene, read_scene, scene_of
+from .scene import Layer, Scene, read_scene, scene_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
 
@@ -69,10 +70,22 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
     source = checked(source)
     if isinstance(source, Path) and source.suffix.lower() == ".json":
         refuse_shaping(source, options)
-        return read_scene(source)
+        scene = read_scene(source)
+        for layer in scene.layers:
+            _tell_facing(layer, str(layer.path), progress)
+        return scene
+    progress = Once(progress)
     title = "mesh" if isinstance(source, TriMesh) else title_of(source)
     path = prepare(source, progress=progress, **options)
-    return scene_of(path, title=title, options=cast(RefineOptions, options))
+    scene = scene_of(path, title=title, options=cast(RefineOptions, options))
+    _tell_facing(scene.layers[0], "mesh" if isinstance(source, TriMesh) else str(source), progress)
+    return scene
+
+
+def _tell_facing(layer: Layer, name: str, progress: Progress) -> None:
+    """A control mesh that is inside out is told of, be it built now or long ago."""
+    if layer.refinement is not None:
+        tell_inside_out(read_cage(layer.path).mesh, name, progress)
 
 
 def prepare(

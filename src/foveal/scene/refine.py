@@ -13,6 +13,7 @@ from foveal.view.camera import Camera
 from .build import Source, checked, up_of
 from .cage_file import ControlMesh, is_cage, read_cage
 from .export import refuse_mesh_output, write_mesh
+from .facing import tell_inside_out
 from .prepare import refuse_shaping
 from .read import read
 from .refine_size import everywhere as everywhere_count
@@ -84,6 +85,7 @@ def refine(
     if isinstance(camera, (str, os.PathLike)):
         camera = read_camera(camera)
     cage = _cage(source, up, options)
+    tell_inside_out(cage.mesh, name, progress)
     if everywhere:
         cage = _everywhere(cage, name)
     eye = camera or home([cage.mesh.positions], up=cage.up)

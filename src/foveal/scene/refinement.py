@@ -1,6 +1,7 @@
 """How a control mesh is refined: its scheme, criteria and limits, chosen in Python and kept in JSON."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
@@ -22,8 +23,9 @@ class RefineOptions(TypedDict, total=False):
     scheme : "sqrt3", "loop" or "butterfly"
         Makes a control mesh of a mesh: √3 subdivision, or RGB triangulations over the rules of Loop or of
         the modified butterfly.
-    criteria : Criteria
-        When a triangle is fine enough, apart for front faces, silhouettes and back faces.
+    criteria : Criteria or mapping
+        When a triangle is fine enough, apart for front faces, silhouettes and back faces. A mapping such as
+        {"front": {"edge_px": 2.0}} leaves all else as it is.
     positions : "control" or "limit"
         Where vertices are shown.
     budget : int
@@ -33,7 +35,7 @@ class RefineOptions(TypedDict, total=False):
     """
 
     scheme: str | None
-    criteria: "Criteria | None"
+    criteria: "Criteria | Mapping[str, Mapping[str, float]] | None"
     positions: str | None
     budget: int | None
     rate: float | None
@@ -76,7 +78,15 @@ class Refinement:
         new: dict[str, Any] = {
             key: value for key, value in options.items() if key in names and value is not None
         }
+        if isinstance(new.get("criteria"), Mapping):
+            new["criteria"] = _changed(self.criteria, new["criteria"])
         return replace(self, **new)
+
+
+def _changed(criteria: "Criteria", given: Mapping[str, Mapping[str, float]]) -> "Criteria":
+    """Criteria with some numbers in place of their own."""
+    regions = {name: replace(getattr(criteria, name), **values) for name, values in given.items()}
+    return replace(criteria, **regions)
 
 
 def chosen(options: RefineOptions, /) -> Refinement | None:
