@@ -15,6 +15,7 @@ from foveal.mesh.shapes import bumpy_sphere, icosphere
 from foveal.refine import Criteria, Region
 from foveal.scene import read_scene
 from foveal.scene.cage_file import read_cage
+from refine.test_sharp import cube
 
 
 @pytest.fixture
@@ -150,6 +151,51 @@ def test_what_is_inside_out_is_told_once(run, tmp_path, monkeypatch, viewer):
         assert "Reverse the corners" in answer.stderr
     write_ply(ball, path)
     assert "inside out" not in run("refine", path, "-o", tmp_path / "c.ply").stderr
+
+
+def test_sharp_edges(run, tmp_path, monkeypatch, viewer):
+    served = []
+    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: served.append(scene) or _Server())
+    path, fov = tmp_path / "cube.ply", tmp_path / "cube.fov"
+    write_ply(cube()[0], path)
+    words = ("--scheme", "sqrt3", "--sharp-edges", "60")
+    answer = run("build", path, "-o", fov, *words)
+    assert "12 triangles, 8 vertices, 12 sharp edges," in answer.stdout
+    assert "sharp edges  12" in run("info", fov).stdout
+    assert "whole" in run("check", fov).stdout
+    everywhere = ("--everywhere", "--iterations", "3", "--json")
+    corners = {(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)}
+    for source, more in ((path, words), (fov, ())):
+        facts = result(run("refine", source, "-o", tmp_path / "a.ply", "--force", *everywhere, *more))
+        assert facts["triangles"] == 12 * 27
+        assert corners <= set(map(tuple, read_mesh(tmp_path / "a.ply").positions.tolist()))
+    run("refine", fov, "-o", tmp_path / "b.ply", "--sharp-edges", "180", *everywhere)
+    assert not corners & set(map(tuple, read_mesh(tmp_path / "b.ply").positions.tolist()))
+    assert run("view", path, *words, "--no-browser").exit_code == 0
+    assert len(read_cage(served[0].layers[0].path).sharp) == 12
+    assert run("publish", path, "-o", tmp_path / "site", *words).exit_code == 0
+    assert len(read_cage(next((tmp_path / "site").glob("data/*.fov"))).sharp) == 12
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "part"),
+    [
+        (("view", "--no-browser", "--scheme", "loop", "--sharp-edges", "30"), 1, "loop knows no sharp edges"),
+        (("view", "--no-browser", "--sharp-edges", "30"), 1, "choose a scheme"),
+        (("build", "--scheme", "sqrt3", "--sharp-edges", "181"), 2, "--sharp-edges"),
+        (("build", "--scheme", "sqrt3", "--sharp-edges", "-1"), 2, "--sharp-edges"),
+        (("refine", "-o", "a.ply", "--sharp-edges", "nan"), 2, "--sharp-edges"),
+        (("refine", "-o", "a.ply", "--sharp-edges"), 2, "--sharp-edges"),
+        (("refine", "-o", "a.ply", "--scheme", "butterfly", "--sharp-edges", "9"), 1, "no sharp edges"),
+    ],
+)
+def test_sharp_edges_that_do_not_fit(run, cage, viewer, tmp_path, monkeypatch, words, code, part):
+    monkeypatch.chdir(tmp_path)
+    answer = run(words[0], cage, *words[1:])
+    assert answer.exit_code == code
+    assert part in answer.stderr
+    assert {path.suffix for path in tmp_path.glob("*.*")} <= {".ply"}
+    assert not (tmp_path / "a.ply").exists()
 
 
 def test_build_as_json_and_info_and_check(run, cage, tmp_path):

@@ -27,6 +27,7 @@ from .options import (
     Positions,
     Quiet,
     Scheme,
+    SharpEdges,
     SilhouetteBend,
     SilhouetteEdgePx,
     SilhouetteIterations,
@@ -152,15 +153,12 @@ def refining(
     back_iterations: BackIterations = None,
     positions: Positions = None,
     budget: Budget = None,
+    sharp_edges: SharpEdges = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
-    radians = [None if degrees is None else math.radians(degrees) for degrees in (bend, silhouette_bend)]
-    silhouette = (silhouette_iterations, silhouette_edge_px, radians[1])
-    regions = {
-        "front": (iterations, edge_px, radians[0]),
-        "silhouette": silhouette,
-        "back": (back_iterations,),
-    }
+    silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
+    front = (iterations, edge_px, _radians(bend))
+    regions = {"front": front, "silhouette": silhouette, "back": (back_iterations,)}
     names = ("iterations", "edge_px", "bend")
     criteria = {
         region: {name: value for name, value in zip(names, values, strict=False) if value is not None}
@@ -171,7 +169,12 @@ def refining(
         "criteria": criteria if any(criteria.values()) else None,
         "positions": positions and positions.value,
         "budget": budget,
+        "sharp_edges": _radians(sharp_edges),
     }
+
+
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)
 
 
 @contextmanager

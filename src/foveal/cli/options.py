@@ -26,6 +26,7 @@ __all__ = [
     "Quiet",
     "Scheme",
     "SchemeKind",
+    "SharpEdges",
     "SilhouetteBend",
     "SilhouetteEdgePx",
     "SilhouetteIterations",
@@ -192,6 +193,15 @@ Budget = Annotated[
     int | None,
     typer.Option(
         min=0, max=2**32 - 1, metavar="N", help="Triangles at most, by a coarser threshold; 0 for no limit."
+    ),
+]
+SharpEdges = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0,
+        max=180.0,
+        metavar="DEGREES",
+        help="Keep edges sharp at which the control mesh bends by more than this. For sqrt3.",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace what is there already.")]

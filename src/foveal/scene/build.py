@@ -83,7 +83,7 @@ def build(
         Number of local threads; by default one a processor.
     scheme : "sqrt3", "loop" or "butterfly", optional
         Keep the mesh as a control mesh, to be refined by this scheme where it is looked at.
-    criteria, positions, budget, rate
+    criteria, positions, budget, rate, sharp_edges
         With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
@@ -118,6 +118,7 @@ def build(
     refinement = chosen(options)
     given = {k: v for k, v in options.items() if v is not None and k not in RefineOptions.__annotations__}
     if refinement is not None:
+        given["sharp_edges"] = options.get("sharp_edges")
         return _build_cage(mesh, output, refinement, given, progress)
     up: Any = given.pop("up", None)
     if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
@@ -155,7 +156,8 @@ def _build_cage(
         progress.note("First run: the kernels are compiled, which takes about a minute, once.")
     up = given.get("up") or (read_cage(mesh).up if isinstance(mesh, Path) and is_cage(mesh) else "y")
     cage = mesh if isinstance(mesh, TriMesh) else read(mesh)
-    report = write_cage(cage, output, refinement=refinement, up=up, name=name)
+    sharp = given.get("sharp_edges")
+    report = write_cage(cage, output, refinement=refinement, up=up, sharp_edges=sharp, name=name)
     if report.welded:
         progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
     tell_inside_out(weld(cage)[0], name, progress)

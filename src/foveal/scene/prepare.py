@@ -32,7 +32,7 @@ __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
 CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
-_SHAPING = ("bits", "step", "normals", "up")  # the options that change the bytes of a build
+_SHAPING = ("bits", "step", "normals", "up", "sharp_edges")  # the options that change the bytes of a build
 _REFINING = ("criteria", "positions", "budget", "rate")  # and those that a scene can say of a control mesh
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20

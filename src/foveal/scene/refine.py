@@ -1,8 +1,12 @@
 """A control mesh refined for a view, or everywhere, as a mesh."""
 
+import dataclasses
 import os
 from pathlib import Path
 from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
@@ -106,11 +110,21 @@ def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> Con
         if is_cage(source):
             refuse_shaping(source, {"up": up}, is_refined=True)
             cage = read_cage(source)
-            return ControlMesh(cage.mesh, cage.refinement.chosen(options), cage.up)
+            own = cage.refinement.chosen(options)
+            return ControlMesh(cage.mesh, own, cage.up, _sharp(cage.mesh, options, cage.sharp))
     refinement = chosen({**options, "scheme": options.get("scheme") or "sqrt3"})
     assert refinement is not None
     mesh = source if isinstance(source, TriMesh) else read(source)
-    return ControlMesh(weld(mesh)[0], refinement, up_of({"up": up}))
+    welded = weld(mesh)[0]
+    return ControlMesh(welded, refinement, up_of({"up": up}), _sharp(welded, options, None))
+
+
+def _sharp(mesh: TriMesh, options: RefineOptions, own: NDArray[np.int32] | None) -> NDArray[np.int32] | None:
+    """The edges that stay sharp: by the angle that was chosen, or the file's own."""
+    from foveal.refine import sharp_edges
+
+    angle = options.get("sharp_edges")
+    return own if angle is None else sharp_edges(mesh, angle)
 
 
 def _everywhere(cage: ControlMesh, name: str) -> ControlMesh:
@@ -134,4 +148,4 @@ def _everywhere(cage: ControlMesh, name: str) -> ControlMesh:
         )
     region = Region(iterations)
     uniform = refinement.chosen({"criteria": Criteria(region, region, region)})
-    return ControlMesh(cage.mesh, uniform, cage.up)
+    return dataclasses.replace(cage, refinement=uniform)

@@ -54,7 +54,7 @@ class _Work:
 
         self._cage, self._camera, self._name = cage, camera, name
         self._stage, self._heed = stage, heed
-        self._live = refiner(cage.mesh, scheme=cage.refinement.scheme, name=name)
+        self._live = refiner(cage.mesh, scheme=cage.refinement.scheme, sharp=cage.sharp, name=name)
         self._most = max(most_triangles(cage.refinement.scheme), len(cage.mesh.faces))
         self._told = 0
 

@@ -32,6 +32,9 @@ class RefineOptions(TypedDict, total=False):
         Triangles at most; 0 for no limit.
     rate : float
         Frames a second that the viewer is to hold; 0 for no such wish.
+    sharp_edges : float
+        Keep the edges sharp at which the control mesh bends by more than this angle, in radians, from 0 to
+        pi; for √3. A `.fov` has them, a scene does not say.
     """
 
     scheme: str | None
@@ -39,6 +42,7 @@ class RefineOptions(TypedDict, total=False):
     positions: str | None
     budget: int | None
     rate: float | None
+    sharp_edges: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +78,7 @@ class Refinement:
 
     def chosen(self, options: RefineOptions, /) -> "Refinement":
         """The same with what was chosen anew."""
-        names = RefineOptions.__annotations__
+        names = self.__dataclass_fields__
         new: dict[str, Any] = {
             key: value for key, value in options.items() if key in names and value is not None
         }
@@ -95,10 +99,14 @@ def chosen(options: RefineOptions, /) -> Refinement | None:
     Raises
     ------
     FovealError
-        If they choose how to refine and no scheme.
+        If they choose how to refine and no scheme, or sharp edges that the scheme does not know.
     """
-    scheme = options.get("scheme")
+    scheme, sharp = options.get("scheme"), options.get("sharp_edges")
     if scheme is not None:
+        if sharp is not None and not 0 <= sharp <= math.pi:
+            raise ValueError(f"sharp_edges must be an angle from 0 to pi, got {sharp}")
+        if sharp is not None and scheme in SCHEMES and scheme != "sqrt3":
+            raise FovealError(f"{scheme} knows no sharp edges. Choose sqrt3, or leave sharp_edges out.")
         from foveal.refine import Criteria
 
         return Refinement(cast(Any, scheme), Criteria()).chosen(options)

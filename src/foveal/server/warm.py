@@ -27,8 +27,9 @@ def warm(scene: Scene, /, *, progress: Progress = SILENT) -> None:
     schemes = {refinement.scheme for refinement in layers.values()}
     with progress.stage("Preparing refinement", len(layers) + len(schemes)) as stage:
         for path, refinement in layers.items():
-            begin = partial(session.Session, scheme=refinement.scheme, name=str(path))
-            _apart(partial(begin, read_cage(path).mesh))
+            cage = read_cage(path)
+            begin = partial(session.Session, scheme=refinement.scheme, sharp=cage.sharp, name=str(path))
+            _apart(partial(begin, cage.mesh))
             stage.advance()
         for scheme in schemes:
             _apart(partial(session.warm, scheme))
