@@ -256,6 +256,9 @@ def test_a_mesh_that_is_no_surface_is_said_before_it_is_served(run, tmp_path, mo
         (["--budget", "-1"], "--budget"),
         (["--everywhere", "--camera", "cam.json"], "--camera"),
         (["--everywhere", "--visible-only"], "--visible-only"),
+        (["--everywhere", "--mode", "filter"], "--everywhere"),
+        (["--visible-only", "--mode", "filter"], "--visible-only"),
+        (["--mode", "published"], "--mode"),
         (["--camera"], "--camera"),
         (["--depth", "3"], "--depth"),
     ],
@@ -272,6 +275,29 @@ def test_the_other_schemes_refine_as_well(run, cage, tmp_path, scheme):
     answer = run("refine", cage, "-o", tmp_path / "a.ply", "--scheme", scheme)
     assert answer.exit_code == 0
     assert (tmp_path / "a.ply").stat().st_size > 0
+
+
+def test_the_paper_has_a_mode_of_its_own(run, cage, tmp_path):
+    out = tmp_path / "a.ply"
+    exact, published = (
+        result(run("refine", cage, "-o", out, "--force", "--json", "--mode", mode))["triangles"]
+        for mode in ("exact", "filter")
+    )
+    assert 320 < published != exact
+    assert (
+        result(run("refine", cage, "-o", out, "--force", "--json", "--mode", "FILTER"))["triangles"]
+        == published
+    )
+    budgeted = ("--mode", "filter", "--budget", "900", "--json", "--force")
+    assert result(run("refine", cage, "-o", out, *budgeted))["triangles"] <= 900
+    for words, part in (
+        (("--scheme", "loop"), "one of sqrt3"),
+        (("--sharp-edges", "1"), "sharp edges, which the mode filter does not know"),
+    ):
+        answer = run("refine", cage, "-o", tmp_path / "b.ply", "--mode", "filter", *words)
+        assert answer.exit_code == 1
+        assert part in answer.stderr
+    assert not (tmp_path / "b.ply").exists()
 
 
 def test_what_does_not_go_together_is_said(run, cage, tmp_path, monkeypatch):

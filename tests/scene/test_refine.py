@@ -9,7 +9,7 @@ import corpus
 from foveal import Camera, FovealError, TriMesh
 from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain
-from foveal.refine import Criteria, Region, sqrt3
+from foveal.refine import Criteria, Region, Sqrt3Filter, sqrt3
 from foveal.scene import refine_size, refined
 from foveal.scene.cage_file import ControlMesh, write_cage
 from foveal.scene.refine import refine
@@ -205,3 +205,39 @@ def test_progress_tells_of_triangles():
     mesh = refine(BALL, camera=VIEW, budget=700, progress=told)
     assert told.total == 700
     assert told.advanced >= len(mesh.faces)
+
+
+@pytest.mark.parametrize("positions", ["control", "limit"])
+def test_the_mode_filter_is_that_of_the_room(positions):
+    published = Sqrt3Filter(BALL)
+    criteria = Criteria(Region(3, 6.0), Region(5, 3.0), Region(0))
+    published.update(VIEW, criteria=criteria)
+    found = refine(BALL, camera=VIEW, criteria=criteria, positions=positions, mode="filter")
+    assert_same(found, published.mesh(positions=positions))
+    if positions == "control":
+        assert_same(found, sqrt3(BALL, VIEW, criteria=criteria, mode="filter"))
+
+
+def test_the_mode_filter_keeps_to_a_budget_and_to_memory(monkeypatch):
+    huge = {"camera": VIEW, "mode": "filter", "criteria": Criteria(Region(20), Region(20), Region(0))}
+    published = Sqrt3Filter(BALL)
+    published.update(VIEW, criteria=huge["criteria"], budget=5_000)
+    assert_same(refine(BALL, **huge, budget=5_000), published.mesh())
+    monkeypatch.setattr(refine_size, "MOST_TRIANGLES", 20_000)
+    for budget in (None, 20_001):
+        with pytest.raises(FovealError, match=r"more than 20,000 .* --budget"):
+            refine(BALL, **huge, budget=budget)
+    assert len(refine(BALL, **huge, budget=20_000).faces) <= 20_000
+
+
+def test_what_the_mode_filter_does_not_know_is_said():
+    for options, part in (
+        ({"everywhere": True}, "no everywhere"),
+        ({"visible_only": True}, "no visible_only"),
+        ({"scheme": "loop"}, "one of sqrt3"),
+        ({"sharp_edges": 0.01}, "sharp edges"),
+    ):
+        with pytest.raises(FovealError, match=part):
+            refine(BALL, mode="filter", **options)
+    with pytest.raises(ValueError, match="exact or filter"):
+        refine(BALL, mode="published")

@@ -19,6 +19,7 @@ __all__ = [
     "Iterations",
     "Json",
     "Memory",
+    "ModeKind",
     "Normals",
     "NormalsKind",
     "Positions",
@@ -81,6 +82,13 @@ class SchemeKind(enum.StrEnum):
     sqrt3 = "sqrt3"
     loop = "loop"
     butterfly = "butterfly"
+
+
+class ModeKind(enum.StrEnum):
+    """How √3 refinement goes about it."""
+
+    exact = "exact"
+    filter = "filter"
 
 
 class PositionsKind(enum.StrEnum):

@@ -22,7 +22,7 @@ from .prepare import refuse_shaping
 from .read import read
 from .refine_size import everywhere as everywhere_count
 from .refine_size import most_triangles
-from .refined import refined
+from .refined import filtered, refined
 from .refinement import RefineOptions, chosen
 from .render import home, read_camera
 
@@ -37,6 +37,7 @@ def refine(
     camera: Camera | PathLike | None = None,
     everywhere: bool = False,
     visible_only: bool = False,
+    mode: str = "exact",
     up: str | None = None,
     progress: Progress = SILENT,
     **options: Unpack[RefineOptions],
@@ -57,6 +58,9 @@ def refine(
         Refine uniformly instead, as often as the criteria's front faces.
     visible_only : bool
         Refine front faces that are behind others as those that face away; for √3.
+    mode : "exact" or "filter"
+        "filter" is √3 as the paper has it, `foveal.refine.Sqrt3Filter`, to compare with: for a camera,
+        without sharp edges. A budget ends it where it would be passed, and turns no threshold.
     up : "x", "y" or "z", optional
         Of a mesh, the axis that points up, where it is not the format's own.
     progress : Progress
@@ -82,6 +86,8 @@ def refine(
     >>> len(refine(icosphere(0), everywhere=True, criteria=Criteria(Region(2))).faces)
     180
     """
+    if mode not in ("exact", "filter"):
+        raise ValueError(f"mode must be exact or filter, got {mode!r}")
     source = checked(source)
     if output is not None:
         refuse_mesh_output(Path(output), source)
@@ -90,10 +96,16 @@ def refine(
         camera = read_camera(camera)
     cage = _cage(source, up, options)
     tell_inside_out(cage.mesh, name, progress)
+    if mode == "filter" and (everywhere or visible_only):
+        what = "everywhere" if everywhere else "visible_only"
+        raise FovealError(f"{name}: the mode filter knows no {what}. Choose the mode exact.")
     if everywhere:
         cage = _everywhere(cage, name)
     eye = camera or home([cage.mesh.positions], up=cage.up)
-    mesh = refined(cage, eye, has_hidden=not visible_only, name=name, progress=progress)
+    if mode == "filter":
+        mesh = filtered(cage, eye, name=name, progress=progress)
+    else:
+        mesh = refined(cage, eye, has_hidden=not visible_only, name=name, progress=progress)
     if output is not None:
         write_mesh(mesh, Path(output), cage.up)
     return mesh

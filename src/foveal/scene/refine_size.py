@@ -15,14 +15,17 @@ __all__ = ["MOST_TRIANGLES", "everywhere", "expected", "most_triangles"]
 MOST_TRIANGLES = 50_000_000
 """What a refinement may have: a minute of work and a file of a gigabyte; more is hardly ever meant."""
 
-# Of memory for a triangle, with what growing takes and the mesh that is handed out. Measured at 19 and 21
-# million: 172 for √3, 275 for Loop; the paper's way keeps its history too.
-_BYTES = {"sqrt3": 200, "loop": 300, "butterfly": 300}
+# Of memory for a triangle, with what growing takes and the mesh that is handed out. Measured at 19, 21 and 7
+# million: 172 for √3, 275 for Loop, 86 for the √3 paper's way.
+_BYTES = {"sqrt3": 200, "loop": 300, "butterfly": 300, "filter": 200}
 _SHARE = 0.8  # of the memory that is free
 
 
 def most_triangles(scheme: str, /) -> int:
-    """How many triangles of a scheme the memory holds that is free now, and not more than 50 million."""
+    """How many triangles the memory that is free now holds, and not more than 50 million.
+
+    Of a scheme, or of the √3 paper's own way, "filter".
+    """
     free = int(psutil.virtual_memory().available * _SHARE)
     return min(MOST_TRIANGLES, free // _BYTES[scheme])
 

@@ -16,7 +16,7 @@ from .refine_size import expected, most_triangles
 if TYPE_CHECKING:
     from foveal.refine import Update
 
-__all__ = ["refined"]
+__all__ = ["filtered", "refined"]
 
 _SPLITS = 50_000  # between two looks at the count, about 50 ms; and 10 MB past what is allowed
 
@@ -37,11 +37,63 @@ def refined(
     FovealError
         If there would be more triangles than memory or anybody's patience holds.
     """
-    total = expected(cage, camera)
-    if cage.refinement.budget:
-        total = min(total, max(cage.refinement.budget, len(cage.mesh.faces)))
-    with progress.stage("Refining", total) as stage:
+    with progress.stage("Refining", _total(cage, camera)) as stage:
         return apart(lambda heed: _Work(cage, camera, name, stage, heed).mesh(has_hidden=has_hidden))
+
+
+def filtered(
+    cage: ControlMesh, camera: Camera, /, *, name: str = "mesh", progress: Progress = SILENT
+) -> TriMesh:
+    """The same by the √3 paper's own way: a budget ends it where it would be passed, silhouettes go first.
+
+    Raises
+    ------
+    FovealError
+        If the control mesh is not refined by √3, has sharp edges, or there would be too many triangles.
+    """
+    if cage.refinement.scheme != "sqrt3":
+        raise FovealError(f"{name}: the mode filter is one of sqrt3. Choose that, or the mode exact.")
+    if cage.sharp is not None and len(cage.sharp):
+        raise FovealError(
+            f"{name}: it has sharp edges, which the mode filter does not know. Choose the mode exact."
+        )
+    with progress.stage("Refining", _total(cage, camera)) as stage:
+        return apart(lambda heed: _filtered(cage, camera, name, stage, heed))
+
+
+def _filtered(
+    cage: ControlMesh, camera: Camera, name: str, stage: Stage, heed: Callable[[], None]
+) -> TriMesh:
+    from foveal.refine import Sqrt3Filter
+
+    refinement, told = cage.refinement, len(cage.mesh.faces)
+    live, most = Sqrt3Filter(cage.mesh, name=name), most_triangles("filter")
+    budget = min(refinement.budget or most, most)
+    while True:
+        heed()
+        done = live.update(camera, criteria=refinement.criteria, most_splits=1, budget=budget)
+        stage.advance(done.faces - told)
+        told = done.faces
+        if done.is_done:
+            break
+        if done.split == 0:  # what is left would pass the budget
+            if budget != refinement.budget:
+                raise _too_many(name, most)
+            break
+    return live.mesh(positions=refinement.positions)
+
+
+def _total(cage: ControlMesh, camera: Camera) -> float:
+    """What there will be, about."""
+    total, budget = expected(cage, camera), cage.refinement.budget
+    return min(total, max(budget, len(cage.mesh.faces))) if budget else total
+
+
+def _too_many(name: str, most: int) -> FovealError:
+    return FovealError(
+        f"{name}: this would be more than {most:,} triangles. Give a --budget, fewer --iterations, "
+        "or a larger --edge-px."
+    )
 
 
 class _Work:
@@ -95,8 +147,5 @@ class _Work:
             if done.is_done or min(budget, self._most) < done.faces:
                 break
         if done.faces > self._most and budget >= self._most:
-            raise FovealError(
-                f"{self._name}: this would be more than {self._most:,} triangles. Give a --budget, fewer "
-                "--iterations, or a larger --edge-px."
-            )
+            raise _too_many(self._name, self._most)
         return int(done.faces)
