@@ -46,6 +46,16 @@ def test_it_is_heeded_when_the_last_stage_ends(swallowed):
     assert is_heeded
 
 
+def test_an_error_that_comes_of_it_is_not_told(swallowed, monkeypatch, run, tmp_path):
+    def compiled(*_, **__):
+        swallowed()
+        raise RuntimeError("no compiled object yet")
+
+    monkeypatch.setattr("foveal.info", compiled)
+    with pytest.raises(KeyboardInterrupt):  # of which `main.run` makes the exit code
+        run("info", tmp_path)
+
+
 def test_who_ignores_interrupts_is_left_alone(monkeypatch):
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:

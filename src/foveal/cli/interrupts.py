@@ -1,8 +1,8 @@
 """Ctrl-C that nothing can swallow.
 
 LLVM's objects are taken down by Python functions whose errors Python only prints: an interrupt that falls
-into one of them while a kernel is compiled is gone. So it is noted as well as raised, and heeded when the
-next stage begins or the last one ends.
+into one of them while a kernel is compiled is gone, or comes out as another error. So it is noted as well as
+raised, and heeded when the next stage begins or the last one ends, and before an error is told.
 """
 
 import signal

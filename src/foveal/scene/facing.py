@@ -1,17 +1,25 @@
 """Whether a control mesh shows its outside."""
 
+import math
+
 import numpy as np
+from numpy.typing import NDArray
 
 from foveal.base.progress import Progress, Stage
 from foveal.mesh.trimesh import TriMesh
 
 __all__ = ["Once", "is_inside_out", "tell_inside_out"]
 
-_LEAST = 1e-9  # of the box of the longest side: less is a sheet of two sides, which has no inside
+# What is open may be a sheet, of which nobody can say. A head open at the neck has 0.085 of its area open, a
+# chess pawn 0.18, a bowl and a terrain from 0.5 on; its volume is 0.08 of its area to the power of 1.5.
+_OPEN, _OPEN_VOLUME = 0.2, 1e-3
+_VOLUME = 1e-9  # less is a sheet of two sides, which has no inside
 
 
 def is_inside_out(mesh: TriMesh, /) -> bool:
-    """Whether a mesh is closed and its triangles are clockwise seen from outside: its volume is negative.
+    """Whether the triangles of a mesh that is closed, or all but closed, are clockwise seen from outside.
+
+    Its volume is negative then, with holes closed from the middle of their borders.
 
     Examples
     --------
@@ -22,24 +30,39 @@ def is_inside_out(mesh: TriMesh, /) -> bool:
     >>> is_inside_out(grid_patch(3))
     False
     """
-    count = len(mesh.positions)
-    begin = mesh.faces.reshape(-1).astype(np.int64)
-    end = np.roll(mesh.faces, -1, axis=1).reshape(-1).astype(np.int64)
-    if not len(begin) or not np.array_equal(np.sort(begin * count + end), np.sort(end * count + begin)):
+    if not len(mesh.faces):
         return False
-    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
-    corners = (mesh.positions / (float((high - low).max()) or 1.0))[mesh.faces]
-    corners -= corners[0, 0]
-    volume = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
-    return bool(volume < -_LEAST)
+    border = _border(mesh)
+    is_open = len(border) > 0
+    around = border if is_open else mesh.faces[0]
+    with np.errstate(over="ignore", invalid="ignore"):  # of what spans all of float64 nothing is said
+        positions = mesh.positions / (float(np.ptp(mesh.positions, axis=0).max()) or 1.0)
+        corners = (positions - positions[around].mean(axis=0))[mesh.faces]
+        areas = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = float(np.linalg.norm(areas, axis=1).sum())
+    volume = float((corners[:, 0] * areas).sum()) / 3
+    is_sheet = float(np.linalg.norm(areas.sum(axis=0))) > _OPEN * area
+    least = (_OPEN_VOLUME if is_open else _VOLUME) * area * math.sqrt(area)
+    return not is_sheet and volume < -least
+
+
+def _border(mesh: TriMesh) -> NDArray[np.int64]:
+    """The ends of edges of one triangle."""
+    count = np.int64(len(mesh.positions))
+    others = np.roll(mesh.faces, -1, axis=1)
+    edges = np.minimum(mesh.faces, others) * count + np.maximum(mesh.faces, others)
+    edges = np.sort(edges, axis=None)
+    is_new = np.concatenate([[True], edges[1:] != edges[:-1], [True]])
+    alone = edges[is_new[1:] & is_new[:-1]]
+    return np.concatenate([alone // count, alone % count])
 
 
 def tell_inside_out(mesh: TriMesh, name: str, progress: Progress, /) -> None:
     """Say that a control mesh is inside out, if it is, and what to do."""
     if is_inside_out(mesh):
         progress.note(
-            f"{name}: it is inside out: closed, with triangles clockwise seen from outside, so its back is "
-            "shown and refined as its front. Reverse the corners of each triangle where it was made."
+            f"{name}: it is inside out: its triangles are clockwise seen from outside, so its back is shown "
+            "and refined as its front. Reverse the corners of each triangle where it was made."
         )
 
 
