@@ -283,7 +283,24 @@ def test_sharp_edges_that_cannot_be_kept_are_said(creased, tmp_path):
     with pytest.raises(FovealError, match="choose a scheme"):
         build(mesh, tmp_path / "b.fov", sharp_edges=1.0)
     assert not (tmp_path / "b.fov").exists()
-    build(path, tmp_path / "b.fov", scheme="loop")  # anew, without them
+    with pytest.raises(FovealError, match="sharp edges, which loop does not know"):
+        load(path, scheme="loop")
+
+
+def test_built_anew_what_is_not_chosen_stays(creased, cage, tmp_path):
+    path, mesh = creased
+    for source in (path, cage):
+        was = read_cage(source)
+        build(source, tmp_path / "b.fov", scheme="sqrt3", budget=77)
+        found = read_cage(tmp_path / "b.fov")
+        assert found.refinement == was.refinement.chosen({"budget": 77})
+        assert found.up == was.up
+        assert (found.sharp is None) == (was.sharp is None)
+    build(path, tmp_path / "b.fov", scheme="sqrt3")
+    assert (read_cage(tmp_path / "b.fov").sharp == sharp_edges(mesh, 1.0)).all()
+    build(path, tmp_path / "b.fov", scheme="sqrt3", sharp_edges=np.pi)
+    assert read_cage(tmp_path / "b.fov").sharp is None
+    build(path, tmp_path / "b.fov", scheme="loop")  # which knows none, and says so
     assert read_cage(tmp_path / "b.fov").sharp is None
 
 

@@ -73,6 +73,6 @@ def refiner(
         return Sqrt3(mesh, sharp=sharp, name=name)
     if sharp is not None and len(np.asarray(sharp)):
         raise FovealError(
-            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or build it without."
+            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or leave them out."
         )
     return Rgb(mesh, scheme=scheme, name=name)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike
@@ -77,10 +77,12 @@ def write_cage(
     *,
     refinement: Refinement,
     up: str = "y",
-    sharp_edges: float | None = None,
+    sharp_edges: ArrayLike | None = None,
     name: str = "mesh",
 ) -> CageReport:
-    """Write a control mesh: vertices at one place become one, edges that bend by more than an angle sharp.
+    """Write a control mesh; vertices at one place become one.
+
+    `sharp_edges` is an angle by which those bend that stay sharp, or (k, 2) int, their vertices then.
 
     Raises
     ------
@@ -96,7 +98,8 @@ def write_cage(
     if max(len(positions), len(faces)) > _MOST:
         raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
     Cage.of(welded, name=name)
-    sharp = np.zeros((0, 2), np.int32) if sharp_edges is None else find_sharp(welded, sharp_edges)
+    sharp = np.array([] if sharp_edges is None else sharp_edges)
+    sharp = find_sharp(welded, float(sharp)) if sharp.ndim == 0 else sharp.reshape(-1, 2).astype(np.int32)
     if len(sharp) > _MOST_SHARP:
         raise FovealError(
             f"{name}: it has {len(sharp):,} sharp edges, more than the {_MOST_SHARP:,} that a file holds. "

@@ -72,20 +72,27 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
         refuse_shaping(source, options)
         scene = read_scene(source)
         for layer in scene.layers:
-            _tell_facing(layer, str(layer.path), progress)
+            _look_at(layer, str(layer.path), progress)
         return scene
     progress = Once(progress)
     title = "mesh" if isinstance(source, TriMesh) else title_of(source)
     path = prepare(source, progress=progress, **options)
     scene = scene_of(path, title=title, options=cast(RefineOptions, options))
-    _tell_facing(scene.layers[0], "mesh" if isinstance(source, TriMesh) else str(source), progress)
+    _look_at(scene.layers[0], "mesh" if isinstance(source, TriMesh) else str(source), progress)
     return scene
 
 
-def _tell_facing(layer: Layer, name: str, progress: Progress) -> None:
-    """A control mesh that is inside out is told of, be it built now or long ago."""
-    if layer.refinement is not None:
-        tell_inside_out(read_cage(layer.path).mesh, name, progress)
+def _look_at(layer: Layer, name: str, progress: Progress) -> None:
+    """Of a control mesh, built now or long ago: tell that it is inside out, refuse what does not fit."""
+    if layer.refinement is None:
+        return
+    cage, scheme = read_cage(layer.path), layer.refinement.scheme
+    if cage.sharp is not None and scheme != "sqrt3":
+        raise FovealError(
+            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or build it anew by "
+            f"{scheme}, which leaves them out."
+        )
+    tell_inside_out(cage.mesh, name, progress)
 
 
 def prepare(
