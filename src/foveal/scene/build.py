@@ -146,12 +146,7 @@ def _build_cage(
     from .read import read
 
     name = "mesh" if isinstance(mesh, TriMesh) else str(mesh)
-    shaping = [option for option in ("bits", "step", "normals") if cast(Any, options).get(option) is not None]
-    if shaping:
-        raise FovealError(
-            f"{name}: a control mesh is kept as it is, so {' and '.join(shaping)} would change nothing. "
-            "Leave that out."
-        )
+    _refuse_shape(name, options)
     if is_cold():
         progress.note("First run: the kernels are compiled, which takes about a minute, once.")
     if isinstance(mesh, Path) and is_cage(mesh):
@@ -177,6 +172,16 @@ def _build_cage(
         progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
     tell_inside_out(weld(cage.mesh)[0], name, progress)
     return report
+
+
+def _refuse_shape(name: str, options: BuildOptions) -> None:
+    given = {option for option, value in options.items() if value is not None}
+    shaping = [option for option in ("bits", "step", "normals") if option in given]
+    if shaping:
+        raise FovealError(
+            f"{name}: a control mesh is kept as it is, so {' and '.join(shaping)} would change nothing. "
+            "Leave that out."
+        )
 
 
 def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Path | TriMesh, Path]:

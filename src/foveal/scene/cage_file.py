@@ -91,20 +91,13 @@ def write_cage(
     """
     from foveal.mesh.topology import weld
     from foveal.refine.cage import Cage
-    from foveal.refine.sharp import sharp_edges as find_sharp
 
     welded = weld(mesh)[0]
     positions, faces = welded.positions, welded.faces
     if max(len(positions), len(faces)) > _MOST:
         raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
     Cage.of(welded, name=name)
-    sharp = np.array([] if sharp_edges is None else sharp_edges)
-    sharp = find_sharp(welded, float(sharp)) if sharp.ndim == 0 else sharp.reshape(-1, 2).astype(np.int32)
-    if len(sharp) > _MOST_SHARP:
-        raise FovealError(
-            f"{name}: it has {len(sharp):,} sharp edges, more than the {_MOST_SHARP:,} that a file holds. "
-            "Ask for a larger angle."
-        )
+    sharp = _sharp_of(welded, sharp_edges, name)
     low, high, origin = _box(positions)
     header = {
         "generator": f"foveal {__version__}",
@@ -121,6 +114,20 @@ def write_cage(
     repeated = len(mesh.positions) - len(positions)
     size = Path(path).stat().st_size
     return CageReport(len(faces), len(positions), repeated, len(sharp), refinement.scheme, size)
+
+
+def _sharp_of(mesh: "TriMesh", given: ArrayLike | None, name: str) -> NDArray[np.int32]:
+    """(k, 2): the edges that an angle makes sharp, or those given."""
+    from foveal.refine.sharp import sharp_edges
+
+    found = np.array([] if given is None else given)
+    sharp = sharp_edges(mesh, float(found)) if found.ndim == 0 else found.reshape(-1, 2).astype(np.int32)
+    if len(sharp) > _MOST_SHARP:
+        raise FovealError(
+            f"{name}: it has {len(sharp):,} sharp edges, more than the {_MOST_SHARP:,} that a file holds. "
+            "Ask for a larger angle."
+        )
+    return sharp
 
 
 def is_cage(path: PathLike, /) -> bool:
