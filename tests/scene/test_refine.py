@@ -158,7 +158,7 @@ def test_too_many_are_refused_before_memory_is_gone(tmp_path, monkeypatch):
 
 def test_with_less_memory_fewer_are_allowed(monkeypatch):
     class Memory:
-        available = 1_000_000_000
+        available = 1_100_000_000
 
     monkeypatch.setattr("psutil.virtual_memory", Memory)
     assert refine_size.most_triangles("sqrt3") == 4_000_000
