@@ -163,8 +163,7 @@ def force(net, f, k, until, view, limits, drift):
             net.vertices[v].until = until
         if net.vertices[v].until <= drift:
             answer(net, v, view, limits, drift)
-        doubt(net, v)
-        reconsider(net, v)
+        consider_new(net, v)
     return True
 
 
@@ -214,9 +213,25 @@ def answer(net, v, view, limits, drift):
 
 
 @lean
+def consider_new(net, v):
+    """Set whether a new vertex is wanted, and what follows. What it would make is not there yet."""
+    judge(net, v)
+    if net.vertices[v].flags & WANTED:
+        follow(net, take(net, 0, v, 1))
+    else:
+        doubt(net, v)
+
+
+@lean
 def reconsider(net, v):
     """Set anew whether v is wanted, and all that follows if that is news."""
-    net.counts[STACK], top = v, 1
+    net.counts[STACK] = v
+    follow(net, 1)
+
+
+@lean
+def follow(net, top):
+    """The same of the first `top` vertices on the stack."""
     while top > 0:
         top -= 1
         w = net.counts[STACK + top]

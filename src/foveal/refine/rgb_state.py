@@ -27,7 +27,7 @@ from .rgb_net import RgbNet
 __all__ = ["State"]
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
-_FACES, _VERTICES = 1 << 16, 1 << 16
+_FACES, _VERTICES = 1 << 17, 1 << 17
 
 
 class State:
