@@ -21,7 +21,8 @@ from ._kernels_rgb_layout import (
     find_edge,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
-from ._kernels_rgb_update import force, has_room, is_from_here, reconsider
+from ._kernels_rgb_update import force, has_room, is_from_here
+from ._kernels_rgb_wanted import reconsider
 
 
 @lean
