@@ -1,7 +1,7 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """What is known of a vertex, and the list of what has to be known first."""
 
-from foveal.base.jit import lean
+from foveal.base.jit import inlined, lean
 
 from ._kernels_rgb_layout import BORN, LIMIT, STACK
 
@@ -9,7 +9,7 @@ from ._kernels_rgb_layout import BORN, LIMIT, STACK
 ASK_BORN, ASK_LIMIT = 0, 1
 
 
-@lean
+@inlined
 def is_known(net, v, level):
     """Whether it is known where v is on a level not below its birth."""
     flags = net.vertices[v].flags
