@@ -1,12 +1,14 @@
-"""Triangle meshes: the data structure, topology, normals, distance, reading and writing."""
+"""Triangle and polygon meshes: the data structures, topology, normals, distance, reading and writing."""
 
 from .io.blocks import FaceBlock, MeshSource, VertexBlock
 from .io.source import open_source, read_mesh, source_from_mesh
+from .polymesh import PolyMesh
 from .trimesh import TriMesh
 
 __all__ = [
     "FaceBlock",
     "MeshSource",
+    "PolyMesh",
     "TriMesh",
     "VertexBlock",
     "open_source",
