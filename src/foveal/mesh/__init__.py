@@ -1,6 +1,7 @@
 """Triangle and polygon meshes: the data structures, topology, normals, distance, reading and writing."""
 
 from .io.blocks import FaceBlock, MeshSource, VertexBlock
+from .io.polygons import read_polygons
 from .io.source import open_source, read_mesh, source_from_mesh
 from .polymesh import PolyMesh
 from .trimesh import TriMesh
@@ -13,5 +14,6 @@ __all__ = [
     "VertexBlock",
     "open_source",
     "read_mesh",
+    "read_polygons",
     "source_from_mesh",
 ]

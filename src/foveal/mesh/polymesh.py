@@ -83,7 +83,7 @@ class PolyMesh:
     def of(
         cls,
         positions: ArrayLike,
-        faces: Sequence[Sequence[int]] | NDArray[np.integer],
+        faces: Sequence[Sequence[int]] | NDArray[np.integer[Any]],
         /,
         *,
         creases: Mapping[tuple[int, int], float] | None = None,
