@@ -19,15 +19,38 @@ SHAPES = {
 }
 
 
+def faces_of(mesh):
+    return [ring.tolist() for ring in np.split(mesh.corners, mesh.starts[1:-1])]
+
+
 def edges_of(mesh):
-    halves = [
-        (a, b)
-        for i in range(mesh.faces)
-        for ring in [mesh.corners[mesh.starts[i] : mesh.starts[i + 1]].tolist()]
-        for a, b in zip(ring, ring[1:] + ring[:1], strict=True)
-    ]
+    halves = [half for ring in faces_of(mesh) for half in zip(ring, ring[1:] + ring[:1], strict=True)]
     assert len(set(halves)) == len(halves)
     return {tuple(sorted(half)) for half in halves}
+
+
+def is_surface(faces):
+    """Each half-edge once, each vertex once a face, and around each vertex one chain or one ring of faces."""
+    following = [dict(zip(ring, ring[1:] + ring[:1], strict=True)) for ring in faces]
+    halves = [half for face in following for half in face.items()]
+    if len(set(halves)) < len(halves) or any(
+        len(face) < len(ring) for face, ring in zip(following, faces, strict=True)
+    ):
+        return False
+    before = {(f, v): u for f, face in enumerate(following) for u, v in face.items()}
+    side = {half: f for f, face in enumerate(following) for half in face.items()}
+    for v in {v for ring in faces for v in ring}:
+        here = {f for f, face in enumerate(following) if v in face}
+        first = next(
+            (f for f in here if (following[f][v], v) not in side), min(here)
+        )  # at the border, or any
+        seen, f = set(), first
+        while f is not None and f not in seen:
+            seen.add(f)
+            f = side.get((v, before[f, v]))
+        if seen != here:
+            return False
+    return True
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -100,6 +123,42 @@ def test_checking_again_changes_nothing():
 def test_unused_vertices_and_back_to_back_faces_are_no_fault():
     assert PolyMesh.of([[9, 9, 9], *SQUARE], [[1, 2, 3, 4]]).faces == 1
     assert PolyMesh.of(SQUARE, [[0, 1, 2, 3], [3, 2, 1, 0]]).faces == 2
+
+
+def mutant(faces, count, rng):
+    """The faces with some corners renamed, faces left out, turned over or given twice."""
+    faces = [list(ring) for ring in faces]
+    for _ in range(int(rng.integers(1, 4))):
+        at = int(rng.integers(len(faces)))
+        kind = rng.choice(["rename", "leave", "turn", "twice", "merge"], p=[0.2, 0.4, 0.1, 0.1, 0.2])
+        if kind == "leave" and len(faces) > 1:
+            del faces[at]
+        elif kind == "turn":
+            faces[at].reverse()
+        elif kind == "twice":
+            faces.append(faces[at][::-1])
+        elif kind == "rename":
+            faces[at][0] = int(rng.integers(count))
+        elif kind == "merge":
+            a, b = rng.integers(count, size=2).tolist()
+            faces = [[a if v == b else v for v in ring] for ring in faces]
+    return faces
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_door_lets_in_what_a_slow_look_finds_to_be_a_surface(name):
+    mesh = SHAPES[name][0]()
+    rng = np.random.default_rng(7)
+    verdicts = []
+    for _ in range(400):
+        faces = mutant(faces_of(mesh), len(mesh.positions), rng)
+        try:
+            assert faces_of(PolyMesh.of(mesh.positions, faces)) == faces
+            verdicts.append(True)
+        except FovealError:
+            verdicts.append(False)
+        assert verdicts[-1] == is_surface(faces), faces
+    assert 40 < sum(verdicts) < 360
 
 
 NAN = [[0, 0, 0], [1, 0, 0], [np.nan, 1, 0], [0, 1, 0]]
