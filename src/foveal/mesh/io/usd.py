@@ -30,7 +30,7 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
     Parameters
     ----------
     prim : str, optional
-        The path of the mesh in the file, such as "/root/spot"; otherwise the first in the file's order.
+        The path of the mesh in the file, such as "/town/house"; otherwise the first in the file's order.
 
     Raises
     ------
