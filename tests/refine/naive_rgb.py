@@ -51,6 +51,16 @@ class Hierarchy:
         face, w = min(self._places[v].items())
         self.key[v] = (face, int(w[0] * 2**20), int(w[1] * 2**20))
 
+    def wanted(self, is_long):
+        """The edges that are split for themselves: those that `is_long(level, a, b)` and one maker of is."""
+        found = set()
+        for level, apexes in enumerate(self.apexes[:-1]):
+            for a, b in apexes:
+                makers = {v for v in (a, b) if level > 0 and self.born[v] == level}
+                if (not makers or makers & found) and is_long(level, a, b):
+                    found.add(frozenset((a, b)))
+        return found
+
     def required(self, edge):
         """The splits without which this one cannot be: those that make its triangles."""
         a, b = edge

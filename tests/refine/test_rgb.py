@@ -119,6 +119,16 @@ def test_on_convex_meshes_no_triangle_is_inverted(name):
         assert (np.einsum("ij,ij->i", normals, (a + b + c) / 3 - mesh.positions.mean(axis=0)) > 0).all()
 
 
+def test_beside_thin_triangles_no_edge_is_left_long():
+    # A strip of triangles ten times as long as wide: the short edges are never wanted for themselves.
+    xs = np.arange(9) / 10
+    points = np.concatenate([np.stack([xs, y * np.ones(9), 0 * xs], axis=1) for y in (0.0, 1.0)])
+    faces = [(i, i + 1, i + 9) for i in range(8)] + [(i + 1, i + 10, i + 9) for i in range(8)]
+    found = rgb(TriMesh.of(points, faces), criteria=by_length(0.15))
+    ends = found.positions[edges_of(found.faces)]
+    assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max() < 0.2
+
+
 def test_lengths_and_distances_are_kept_to():
     mesh = bumpy_sphere(1)
     by_edges = rgb(mesh, criteria=by_length(0.1))

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 import corpus
 from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain, tetrahedron, torus
-from foveal.refine import Rgb
+from foveal.refine import Rgb, by_length, rgb
 from foveal.refine import _kernels_rgb_merge as merging
 from foveal.refine import _kernels_rgb_update as kernels
 from foveal.refine._kernels_rgb_address import BASE_KEY, MASK
@@ -179,3 +180,23 @@ def test_merged_all_the_way_it_is_the_control_mesh_bit_for_bit(name):
     back = walk.refined.mesh()
     assert (back.positions == mesh.positions).all()
     assert sorted(map(tuple, np.sort(back.faces, axis=1))) == sorted(map(tuple, np.sort(mesh.faces, axis=1)))
+
+
+@pytest.mark.parametrize("scheme", ["loop", "butterfly"])
+@pytest.mark.parametrize("name", [n for n in SURFACES if n != "bumpy"])  # too slow for the twin
+def test_what_is_split_is_what_is_wanted_and_what_that_takes(name, scheme):
+    mesh = SURFACES[name]()
+    naive = Hierarchy(mesh.positions, mesh.faces, DEPTH - 1, scheme)
+    length = 0.4 * max(np.linalg.norm(mesh.positions[a] - mesh.positions[b]) for a, b in naive.apexes[0])
+
+    def is_long(level, a, b):
+        at = naive.positions[level]
+        return np.linalg.norm(at[b] - at[a]) > length
+
+    wanted = naive.wanted(is_long)
+    assert 0 < max(naive.born[v] for v in wanted) < DEPTH - 1
+    expected = naive.triangles(naive.closed(wanted))
+    found = rgb(mesh, criteria=by_length(length), scheme=scheme)
+    assert len(found.faces) == len(expected)
+    distance, _ = KDTree(list(naive.shown(expected).values())).query(found.positions)
+    assert distance.max() <= 1e-13 * np.linalg.norm(np.ptp(mesh.positions, axis=0))

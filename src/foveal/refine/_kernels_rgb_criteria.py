@@ -9,6 +9,8 @@ surface bent as much again.
 
 import math
 
+import numpy as np
+
 from foveal.base.jit import lean
 
 from ._kernels_criteria import (
@@ -29,16 +31,17 @@ from ._kernels_rgb_points import ensure_at, position
 
 
 @lean
-def has_wanted_parents(net, a, b, level):
-    """Whether the edge a, b of a level is there for itself: all that it takes is wanted, or it takes nothing.
+def has_wanted_maker(net, a, b, level):
+    """Whether a split that makes the edge a, b of a level is wanted, or it takes none.
 
-    A half edge takes the split of the edge it is half of; an inner edge of both whose middles it joins. (Were
-    one enough, edges would be wanted that are not in the mesh yet, all along a refined part's end.)
+    A half edge is made by the split of the edge it is half of; an inner edge by those of the two whose
+    middles it joins. One will do: beside long thin triangles the other is often too short to be wanted for
+    itself. Were both asked for, one in eight triangles seen of a machine's part kept too long an edge.
     """
     if level == 0:
         return True
-    return (net.births[a] != level or (net.flags[a] & WANTED) != 0) and (
-        net.births[b] != level or (net.flags[b] & WANTED) != 0
+    return (net.births[a] == level and net.flags[a] & WANTED != 0) or (
+        net.births[b] == level and net.flags[b] & WANTED != 0
     )
 
 
@@ -54,14 +57,20 @@ def spread_of(net, a, b, level):
 
 
 @lean
+def finest(limits):
+    """The level whose edges are not split, whatever they look like."""
+    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
+    return min(np.int64(most), LEVELS)
+
+
+@lean
 def wants_edge(net, a, b, level, view, limits):
     """(is wanted, slack) of the edge a, b of a level, whatever its parents are.
 
     The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
     of the frustum has moved by `slack`.
     """
-    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
-    if level >= min(most, LEVELS):
+    if level >= finest(limits):
         return False, math.inf
     ensure_at(net, a, level)
     ensure_at(net, b, level)

@@ -20,14 +20,15 @@ NONE = -1
 GREEN, RED_LONG, RED_SHORT, BLUE = 0, 1, 2, 3
 FREE_CODE, FREE = 255, -1
 
-#: Flags of vertices: the edge it splits is split for itself; for finer ones; it meets the criteria; where it
-#: was born is known; its limit is known; it is in the mesh.
-WANTED, NEEDED, MEETS, BORN, LIMIT, PRESENT = 1, 2, 4, 8, 16, 32
+#: Flags of vertices: the edge it splits is split for itself; it meets the criteria; where it
+#: was born is known; its limit is known; it is in the mesh; its normal and spread are known.
+WANTED, MEETS, BORN, LIMIT, PRESENT, NORMAL = 1, 2, 4, 8, 16, 32
 
-#: Places in `counts`: slots ever used, the first free ones, the queue, what there is, the clock of use.
+#: Places in `counts`: slots ever used, the first free ones, the queue, what there is, the clock of use, the
+#: first vertex that may have to go.
 FACES, VERTICES, FREE_FACE, FREE_VERTEX, FIRST, WAITING = 0, 1, 2, 3, 4, 5
 FACES_IN_USE, PRESENT_COUNT, SPLITS, MERGES, CLOCK, SCHEME, IN_USE = 6, 7, 8, 9, 10, 11, 12
-LAST, BASE_COUNT = 13, 14
+LAST, BASE_COUNT, DOUBTFUL = 13, 14, 15
 
 #: Behind them: what is being computed for something else, and pairs of ends of edges being split for others.
 STACK, CHAIN, WORDS = 16, 16 + 4096, 16 + 4096 + 512

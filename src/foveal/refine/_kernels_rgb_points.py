@@ -21,7 +21,7 @@ from foveal.base.jit import lean
 from ._kernels_rgb_address import LEFT, RIGHT, at, side
 from ._kernels_rgb_butterfly import butterfly_born, butterfly_needs
 from ._kernels_rgb_known import ASK_BORN, ASK_LIMIT, is_known, push, push_unknown, set_born
-from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, PRESENT, SCHEME, STACK
+from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, NORMAL, PRESENT, SCHEME, STACK
 
 SIXTH = 1.0 / 6.0
 
@@ -188,7 +188,11 @@ def ensure_at(net, v, level):
 
 @lean
 def set_normal(net, v):
-    """The normal of the two triangles v is born between, and how far theirs and its ends' are from it."""
+    """The normal of the two triangles v is born between, and how far theirs and its ends' are from it.
+
+    Those of its ends are known.
+    """
+    net.flags[v] |= NORMAL
     a, b, c, d = diamond_of(net, v)
     level = np.int64(net.births[v]) - 1
     for w in (a, b, c, d):  # the butterfly, and what was remembered of v, may have done without

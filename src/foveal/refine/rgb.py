@@ -166,10 +166,10 @@ class Rgb:
             if not self._drift.move(view, limits, state.box()):
                 state.net.faces["until"] = state.net.vertices["until"] = 0.0
             drift = self._drift.total
-            order, begin = state.order(), 0
-            while (begin := int(kernels.review(state.net, order, begin, view, limits, drift))) < len(order):
+            begin = 0
+            while (begin := int(kernels.review(state.net, begin, view, limits, drift))) < state.slots:
                 state.grow()
-            kernels.coarsen(state.net, order)
+            kernels.coarsen(state.net)
             kernels.enqueue_expired(state.net, drift)
         drift = self._drift.total
         most = _EVER if most_splits is None else int(state.net.counts[SPLITS]) + most_splits

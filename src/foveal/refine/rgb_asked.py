@@ -23,24 +23,15 @@ def bring_measured(state: State, measure: Measure, scale: float, most_faces: int
     net = state.net
     net.faces["until"][: net.counts[FACES]] = net.vertices["until"] = 0.0
     _answer_split(state, measure, scale)
-    order = state.order()
-    _review(state, order)
-    update_kernels.coarsen(state.net, order)
+    update_kernels.coarsen(state.net)
     update_kernels.enqueue_expired(state.net, 1.0)
     while state.faces <= most_faces:
         before = int(state.net.counts[SPLITS])
         asked = _answer_candidates(state, measure, scale)
         if int(state.net.counts[SPLITS]) > before:  # what was forced may be wanted for itself
             _answer_split(state, measure, scale)
-            _review(state, state.order())
         elif not asked:
             break
-
-
-def _review(state: State, order: NDArray[np.int32]) -> None:
-    begin = 0
-    while (begin := int(update_kernels.review(state.net, order, begin, _VIEW, _LIMITS, -1.0))) < len(order):
-        state.grow()
 
 
 def _answer_split(state: State, measure: Measure, scale: float) -> None:

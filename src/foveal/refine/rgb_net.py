@@ -33,7 +33,8 @@ FACE = np.dtype(
 #: A vertex, in the mesh or only computed: where it was born, its limit, how much nearer to that it comes with
 #: each level; up to which drift it is known whether the edge it splits meets the criteria; the normal and
 #: spread of the triangles it was born between; the ends and apexes of that edge; its address, one of its
-#: faces, and when it was last used. Of a free slot `diamond[0]` is the next one.
+#: faces, and when it was last used; the next that may have to go, if it may; how many splits take it. Of a
+#: free slot `diamond[0]` is the next one.
 VERTEX = np.dtype(
     [
         ("born", np.float64, 3),
@@ -46,6 +47,9 @@ VERTEX = np.dtype(
         ("key", np.int64),
         ("around", np.int32),
         ("stamp", np.uint32),
+        ("next", np.int32),
+        ("needed", np.uint8),
+        ("is_doubtful", np.bool_),
     ],
     align=True,
 )

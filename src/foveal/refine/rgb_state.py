@@ -5,13 +5,12 @@ from numpy.typing import NDArray
 
 from . import _kernels_rgb_base as base_kernels
 from . import _kernels_rgb_show as show_kernels
-from . import _kernels_rgb_update as kernels
-from ._kernels_rgb_address import LEVELS
 from ._kernels_rgb_layout import (
     BASE_COUNT,
     BORN,
     BUTTERFLY,
     CLOCK,
+    DOUBTFUL,
     FACES,
     FACES_IN_USE,
     FREE_FACE,
@@ -39,7 +38,7 @@ class State:
         self.net = net = RgbNet.empty(2 * faces + _FACES, 2 * count + _VERTICES, cage)
         net.counts[[FACES, FACES_IN_USE]] = faces
         net.counts[[VERTICES, IN_USE, PRESENT_COUNT]] = count
-        net.counts[[FREE_FACE, FREE_VERTEX]] = -1
+        net.counts[[FREE_FACE, FREE_VERTEX, DOUBTFUL]] = -1
         net.counts[SCHEME], net.counts[BASE_COUNT] = scheme, count
         net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
         net.faces["base"][:faces] = np.arange(faces)
@@ -67,14 +66,14 @@ class State:
         return int(self.net.counts[FACES_IN_USE])
 
     @property
+    def slots(self) -> int:
+        """Of vertices that were ever used."""
+        return int(self.net.counts[VERTICES])
+
+    @property
     def vertices(self) -> int:
         """Of the mesh."""
         return int(self.net.counts[PRESENT_COUNT])
-
-    def order(self) -> NDArray[np.int32]:
-        """The vertices in the mesh born after level 0, by birth."""
-        order = np.empty(self.vertices, np.int32)
-        return order[: kernels.sort_by_birth(self.net, np.empty(LEVELS + 3, np.int64), order)]
 
     def forget(self, capacity: int) -> None:
         """Keep of the vertices that are not in the mesh so many, those that were used last; time goes on."""
