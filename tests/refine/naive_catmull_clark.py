@@ -27,6 +27,7 @@ class Surface:
     sharp: dict
     corners_stay: bool  # a vertex of one face is infinitely sharp
     holes: set = field(default_factory=set)
+    areas: dict | None = None  # normals by corner, of the first settled surface or handed on from it
 
     def __post_init__(self):
         # side[a, b] is (face, k) where the face's corner k is a and the next is b.
@@ -41,6 +42,8 @@ class Surface:
         for a, b in self.edges:
             self.ends[a].append(b)
             self.ends[b].append(a)
+        if self.areas is None and self.is_settled():
+            self.areas = area_normals(self)
 
     def is_rim(self, a, b):
         return (a, b) not in self.side or (b, a) not in self.side
@@ -109,7 +112,10 @@ def subdivided(s):
         if less(sharpness, 1) > 0:
             creases |= {(v, number[edge]): less(sharpness, 1) for v in edge}
     sharp = {v: less(sharpness, 1) for v, sharpness in s.sharp.items() if less(sharpness, 1) > 0}
-    return Surface(np.array([*moved, *middles, *centres]), faces, creases, sharp, s.corners_stay, holes)
+    begin = np.cumsum([0] + [len(face) for face in s.faces])
+    areas = s.areas and {(begin[f] + k, 0): normal for (f, k), normal in s.areas.items()}
+    points = np.array([*moved, *middles, *centres])
+    return Surface(points, faces, creases, sharp, s.corners_stay, holes, areas)
 
 
 def edge_point(s, centres, a, b):
@@ -147,7 +153,8 @@ def limits(s, level=0):
     """Of the surface after `level` steps: limit points (n, d) and unit normals, one a corner of its faces.
 
     Normals are in the order of the corners of the faces, since a vertex has one a sector: all corners
-    between two sharp edges have the same. Zero where there is none (no tangent plane and no convention).
+    between two sharp edges have the same. A corner of several faces has no tangent plane: its normals are
+    those of its sectors' faces at the least level at which all is settled, whatever the level asked for.
     """
     for _ in range(level):
         s = subdivided(s)
@@ -164,6 +171,19 @@ def limits(s, level=0):
             points[v], normals = vertex_limit(s, v)
             normal_at.update(normals)
     return points, np.array([normal_at[corner] for corner in place])
+
+
+def area_normals(s):
+    """By corner of a face, the unit sum of the area vectors of the faces in its sector."""
+    normals = {}
+    for v in range(len(s.points)):
+        for fans in sectors(s, v):
+            area = sum(
+                np.cross(s.points[f, :3] - s.points[v, :3], s.points[b, :3] - s.points[a, :3])
+                for a, f, b, _ in fans
+            )
+            normals |= {corner: unit(area) for _, _, _, corner in fans}
+    return normals
 
 
 def sectors(s, v):
@@ -195,15 +215,22 @@ def vertex_limit(s, v):
             p[fans[-1][2]]
         ]  # one more than faces; all around, the first again
         f = [p[w] for _, w, _, _ in fans]
+        one = two = np.zeros(3)
         if kind == "corner":
-            point, one, two = p[v], e[0] - p[v], e[-1] - p[v]
+            point = p[v]
+            if len(f) == 1:
+                one, two = e[0] - p[v], e[1] - p[v]
         elif kind == "crease":
             point = (e[0] + 4 * p[v] + e[-1]) / 6
             one, two = e[0] - e[-1], weighted(across_weights(len(f)), p[v], e, f)
         else:
             masks = dart_weights(len(f)) if s.sharp_ends(v) else smooth_weights(len(f))
             point, one, two = (weighted(mask, p[v], e[:-1], f) for mask in masks)
-        normals |= {corner: unit(np.cross(one[:3], two[:3])) for _, _, _, corner in fans}
+        normal = np.cross(one[:3], two[:3])
+        is_tiny = np.linalg.norm(normal) <= 1e-12 * np.linalg.norm(one[:3]) * np.linalg.norm(two[:3])
+        none = np.zeros(3)  # where there is no tangent plane at a vertex younger than the settled surface
+        for _, _, _, corner in fans:
+            normals[corner] = s.areas.get(corner, none) if is_tiny else unit(normal)
     return point, normals
 
 
