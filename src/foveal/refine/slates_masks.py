@@ -14,6 +14,7 @@ tangent across a crease is the left eigenvector of the standard rule's own step;
 """
 
 import functools
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -161,7 +162,7 @@ def _sectors(ring: Ring) -> list[list[int]]:
     if not sharp:
         return [[*range(ring.faces)]]
     if n > ring.faces:
-        return [[*range(a, b)] for a, b in zip(sharp, sharp[1:], strict=False)]
+        return [[*range(a, b)] for a, b in itertools.pairwise(sharp)]
     turns = zip(sharp, [*sharp[1:], sharp[0] + n], strict=True)
     return [[i % n for i in range(a, b)] for a, b in turns]
 
