@@ -3,7 +3,8 @@
 
 A table of depth d is 2^d + 3 points a side: the patch and a ring around it. Inside, one rule for all; sides
 that are sharp and corners of other than four smooth faces are done anew after each step. Every sum is one
-that does not change when the patch is turned, so that two patches agree on a border to the last bit.
+that does not change when the patch is turned, and a limit is taken in the step in which its point is new,
+so that two patches agree on a border to the last bit, whatever their depths are.
 
 Based on: V. Settgast, K. Müller, Chr. Fünfzig, D. Fellner. Adaptive tessellation of subdivision surfaces,
 section 3.2; the rules of E. Catmull, J. Clark 1978, the limits of M. Halstead, M. Kass, T. DeRose 1993.
@@ -36,11 +37,9 @@ def tessellate(net, work, points, corner_points, corner_normals, patches, places
             if not is_plain:
                 mend(net, work, patches, first, lanes, level, a, b, n)
             n = 2 * n - 3
-        a = work.slates[depth & 1]
-        if depth > 0:
-            limits(a, n, work.limits, places, first, lanes, out, is_surface)
+            limits(b, n, work.limits, places, first, lanes, depth - level - 1, out, is_surface)
             if not is_plain:
-                side_limits(net, a, n, patches, places, first, lanes, depth, out, is_surface)
+                side_limits(net, b, n, patches, places, first, lanes, level + 1, depth, out, is_surface)
         for lane in range(lanes):
             corner_limits(
                 net, corner_points, corner_normals, patches[first + lane], places[first + lane], depth, out,
@@ -122,11 +121,11 @@ def put(ring, i, table, q):
 
 
 @lean
-def limits(a, n, scratch, places, first, lanes, out, is_surface):
-    """Limit points and normals by the rule of four faces, for all points of all patches."""
-    row = n * WORDS
+def limits(a, n, scratch, places, first, lanes, left, out, is_surface):
+    """Limit points and normals by the rule of four faces, of points new in this step; `left` are to do."""
+    row, size = n * WORDS, ((n - 3) << left) + 1
     for r in range(1, n - 1):
-        for c in range(1, n - 1):
+        for c in range(1 + r % 2, n - 1, 1 + r % 2):
             p = r * row + c * WORDS
             for k in range(WORDS):
                 e0, e1, e2, e3 = a[p + WORDS + k], a[p + row + k], a[p - WORDS + k], a[p - row + k]
@@ -138,7 +137,7 @@ def limits(a, n, scratch, places, first, lanes, out, is_surface):
                 scratch[2 * WORDS + k] = 4.0 * (e1 - e3) + ((f0 + f1) - (f2 + f3))
             if is_surface:
                 cross(scratch)
-            i = (r - 1) * (n - 2) + c - 1
+            i = ((r - 1) << left) * size + ((c - 1) << left)
             for lane in range(lanes):
                 o = places[first + lane] + i
                 for x in range(3):
@@ -168,20 +167,20 @@ def cross(scratch):
 
 
 @lean
-def side_limits(net, a, n, patches, places, first, lanes, depth, out, is_surface):
-    """Points inside sharp sides anew."""
-    size = n - 2
+def side_limits(net, a, n, patches, places, first, lanes, level, depth, out, is_surface):
+    """Points new inside sharp sides anew."""
+    size, stride = (1 << depth) + 1, 1 << (depth - level)
     for lane in range(lanes):
         for k in range(4):
             h = 4 * patches[first + lane] + k
-            left = net.sharp[h] - depth
+            left = net.sharp[h] - level
             if not left > 0.0:
                 continue
             p, ahead, inside = frame(k, n)
-            mask = net.side_masks[net.side_class[h], depth]
+            mask = net.side_masks[net.side_class[h], level]
             row, onwards = side_rows(k, size)
-            for i in range(1, size - 1):
-                o = places[first + lane] + row + i * onwards
+            for i in range(1, n - 3, 2):
+                o = places[first + lane] + row + i * stride * onwards
                 side_point(
                     a, p + i * ahead + lane, LANES, ahead, inside, left, mask, is_surface, out.positions,
                     out.normals, o,

@@ -72,3 +72,21 @@ def fill_grid(corners, mates, place, fans, ring_starts, ring, grid):
                 if k >= 2:
                     row += 1
                 grid[f, 4 * (row + 1) + column + 1] = to
+
+
+@lean
+def touched(net, is_moved, is_vertex, is_patch):
+    """Which vertices have something that moved in their rings, and which patches have such a corner."""
+    for v in range(len(is_vertex)):
+        is_near = is_moved[v]
+        for i in range(net.ring_starts[v], net.ring_starts[v + 1]):
+            is_near = is_near or is_moved[net.ring[i]]
+        is_vertex[v] = is_near
+    for f in range(len(is_patch)):
+        h = 4 * f
+        is_patch[f] = (
+            is_vertex[net.corners[h]]
+            or is_vertex[net.corners[h + 1]]
+            or is_vertex[net.corners[h + 2]]
+            or is_vertex[net.corners[h + 3]]
+        )

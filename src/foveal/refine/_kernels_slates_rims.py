@@ -23,15 +23,15 @@ def rims(net, work, points, corner_points, corner_normals, sides, depths, places
         for level in range(depth):
             rim_step(net, work, h, after, level, n)
             n = 2 * n - 1
-        left = net.sharp[h] - depth
-        mask = net.side_masks[net.side_class[h], depth]
-        for c in range(1, n - 1):
-            side_point(
-                work.slates[depth & 1], 3 * (n + c), 1, 3, 3 * n, left, mask, is_surface, out.positions,
-                out.normals, place + c,
-            )  # fmt: skip
+            left, stride = net.sharp[h] - level - 1, 1 << (depth - level - 1)
+            mask = net.side_masks[net.side_class[h], level + 1]
+            for c in range(1, n - 1, 2):
+                side_point(
+                    work.slates[1 - (level & 1)], 3 * (n + c), 1, 3, 3 * n, left, mask, is_surface,
+                    out.positions, out.normals, place + c * stride,
+                )  # fmt: skip
         for end in range(2):
-            corner, o = (after if end else h), place + end * (n - 1)
+            corner, o = (after if end else h), place + (end << depth)
             for x in range(3):
                 out.positions[o, x] = corner_points[net.corners[corner], x]
                 if is_surface:

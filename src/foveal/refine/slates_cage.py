@@ -41,6 +41,8 @@ class SlateNet(NamedTuple):
         Faces at a vertex; REGULAR, SMOOTH or TAGGED; its own sharpness.
     place : (4 m,) int64
         Which spoke of its vertex's ring a corner's edge is.
+    fan_starts, fan : (n + 1,) int64, (4 m,) int64
+        The corners around a vertex, in the ring's order.
     sharp : (4 m,) float64
         Of sides; infinite at borders.
     side_class : (4 m,) int64
@@ -70,6 +72,8 @@ class SlateNet(NamedTuple):
     kinds: NDArray[np.int8]
     vertex_sharp: Floats
     place: Ints
+    fan_starts: Ints
+    fan: Ints
     sharp: Floats
     side_class: Ints
     side_masks: Floats
@@ -165,7 +169,7 @@ def _net(polygons: Polygons, steps: int) -> SlateNet:
     numbers, masks = _masks(*rings, steps)
     return SlateNet(
         *(corners, mates, polygons.edge, grid, ring_starts, ring, spokes, fans, kinds),
-        *(polygons.vertex_sharp, place, sharp, class_of, np.array(tables)),
+        *(polygons.vertex_sharp, place, fan_starts, fan, sharp, class_of, np.array(tables)),
         *_tables(numbers, masks, corners, place),
     )
 

@@ -163,7 +163,8 @@ class Polygons:
         """How much of the smooth rule, of the crease rule, and of that for the creases of the next step."""
 
         def at_ends(weights: NDArray[Any]) -> Floats:
-            return np.bincount(self.ends.T.reshape(-1), np.tile(weights, 2), minlength=self.count)
+            total = np.bincount(self.ends.T.reshape(-1), np.tile(weights, 2), minlength=self.count)
+            return total.astype(np.float64)
 
         now, then = at_ends(self.sharp > 0), at_ends(self.sharp > 1)
         corner, corner_then = self.vertex_sharp > 0, self.vertex_sharp > 1

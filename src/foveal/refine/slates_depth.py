@@ -1,0 +1,175 @@
+"""How deep each patch shall be for a view: by curvature, class, projected size, and a budget of triangles."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.view.camera import Camera
+
+from . import _kernels_slates_depth as kernels
+from ._kernels_slates_layout import MOST_DEPTH
+from .slates_blocks import Blocks
+from .slates_cage import SlateCage
+from .slates_work import Work
+
+__all__ = ["Depths", "Views"]
+
+Floats = NDArray[np.float64]
+Levels = NDArray[np.int8]
+
+
+@dataclass(frozen=True, slots=True)
+class Depths:
+    """The rules by which patches get their depth; each can be left out.
+
+    Attributes
+    ----------
+    most : int
+        No patch is deeper, from 0 to 8. What a rule that is left out would have made coarser has this depth.
+    cone : float or None
+        Curvature: so deep that the faces around a vertex are within this angle, in radians, of the limit
+        normal. None to leave it out.
+    backs : bool
+        Patches that face away are not subdivided. On open control meshes their backs may be seen, so there
+        they count as fronts.
+    silhouettes : bool
+        Patches that do neither have the mean of `most` and their depth by curvature, rounded up.
+    epsilon : float
+        A vertex is front or back where the cosine between its normal and the ray exceeds it.
+    size_px : (float, float) or None
+        The smallest and largest radius, in pixels, of a patch's bounding ball halved as often as it is
+        subdivided; the second at least twice the first. None to leave it out.
+
+    Examples
+    --------
+    >>> Depths(most=3, cone=None, backs=False, silhouettes=False, size_px=None)  # depth 3 everywhere
+    Depths(most=3, cone=None, backs=False, silhouettes=False, epsilon=0.1, size_px=None)
+    """
+
+    most: int = 5
+    cone: float | None = math.radians(8)
+    backs: bool = True
+    silhouettes: bool = True
+    epsilon: float = 0.1
+    size_px: tuple[float, float] | None = (3.0, 24.0)
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.most <= MOST_DEPTH or int(self.most) != self.most:
+            raise ValueError(f"most must be a whole number from 0 to {MOST_DEPTH}, got {self.most}")
+        if self.cone is not None and not 0 < self.cone <= math.pi:
+            raise ValueError(f"cone must be an angle above 0 and at most pi, or None, got {self.cone}")
+        if not 0 <= self.epsilon <= 1:
+            raise ValueError(f"epsilon must be a cosine from 0 to 1, got {self.epsilon}")
+        if self.size_px is not None and not 0 <= 2 * self.size_px[0] <= self.size_px[1]:
+            raise ValueError(
+                f"size_px must be two radii, the second at least twice the first, got {self.size_px}"
+            )
+
+
+class Views:
+    """The rules' answers for placements of a control mesh; what depends on the mesh alone is kept."""
+
+    def __init__(self, cage: SlateCage, blocks: Blocks, /) -> None:
+        self._cage, self._blocks = cage, blocks
+        self._is_open = bool((cage.net.mates < 0).any())
+        self.forget()
+
+    def forget(self) -> None:
+        """The control mesh moved."""
+        net, points = self._cage.net, self._blocks.points[0]
+        self._cosines: Floats | None = None
+        self._curvature: tuple[tuple[float | None, int], Levels] | None = None
+        self._balls = np.empty((len(net.grid), 4))
+        kernels.spheres(net, points, self._balls)
+
+    def curvature(self, cone: float | None, most: int, /) -> Levels:
+        """(n,): the depth that each vertex needs, by the cone of normals."""
+        key = cone, most
+        if self._curvature is not None and self._curvature[0] == key:
+            return self._curvature[1]
+        count = len(self._blocks.points[0])
+        levels = np.full(count, most, np.int8)
+        if cone is not None:
+            if self._cosines is None or self._cosines.shape[1] <= most:
+                self._cosines = np.ones((count, most + 1))
+                net, work = self._cage.net, Work.of(self._cage.net, 0)
+                data = self._blocks.points[0], self._blocks.corner_normals
+                kernels.bends(net, work, *data, most + 1, self._cosines)
+            kernels.curved(self._cosines, math.cos(cone), most, levels)
+        self._curvature = key, levels
+        return levels
+
+    def look(self, camera: Camera, rules: Depths, placements: Floats, /) -> "Look":
+        """Of one view, for each placement (k, 4, 4)."""
+        net, m = self._cage.net, len(self._cage.net.grid)
+        classes = np.empty((len(placements), len(self._blocks.points[0])), np.int8)
+        sizes = np.empty((len(placements), m))
+        for i, matrix in enumerate(placements):
+            eye = np.linalg.solve(matrix, [*camera.position, 1.0])[:3]
+            corners = self._blocks.corner_points[0], self._blocks.corner_normals
+            kernels.classify(net, *corners, eye, rules.epsilon, classes[i])
+            scale = float(np.linalg.norm(matrix[:3, :3], 2))
+            view = camera.position, camera.pixels_per_radian()
+            kernels.radii(self._balls, matrix, scale, *view, sizes[i])
+        return Look(self, rules, classes, sizes)
+
+    def depths(self, look: "Look", most: int, /) -> Levels:
+        """(k m,): by the rules, none deeper than `most`."""
+        rules, m = look.rules, len(self._cage.net.grid)
+        smallest, largest = rules.size_px or (0.0, math.inf)
+        words = np.array([rules.backs and not self._is_open, rules.silhouettes, smallest, largest], float)
+        curvature = self.curvature(rules.cone, rules.most)
+        out = np.empty(len(look.sizes) * m, np.int8)
+        shown = self._cage.is_shown
+        for i, (classes, sizes) in enumerate(zip(look.classes, look.sizes, strict=True)):
+            part = out[i * m : (i + 1) * m]
+            kernels.choose(self._cage.net, shown, curvature, classes, sizes, words, most, part)
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a view says of vertices and patches: `classes` (k, n), `sizes` (k, m) in pixels."""
+
+    views: Views
+    rules: Depths
+    classes: NDArray[np.int8]
+    sizes: Floats
+
+    def depths(self) -> Levels:
+        """(k m,): by the rules."""
+        return self.views.depths(self, self.rules.most)
+
+    def within(self, budget: int, count: Callable[[Levels], int], /) -> Levels:
+        """(k m,): as deep as the rules and a budget of triangles allow.
+
+        First the maximum depth is lowered until the budget holds, then patches rise to the next, those
+        that look largest first, as many as may: a function of the view alone. More triangles than the
+        budget only where nothing is subdivided.
+        """
+        upper = self.depths()
+        if count(upper) <= budget:
+            return upper
+        for most in range(self.rules.most - 1, -1, -1):
+            lower = self.views.depths(self, most)
+            if count(lower) <= budget or most == 0:
+                return self._between(lower, upper, budget, count)
+            upper = lower
+        return self.views.depths(self, 0)
+
+    def _between(self, lower: Levels, upper: Levels, budget: int, count: Callable[[Levels], int]) -> Levels:
+        rising = np.flatnonzero(upper > lower)
+        looks = np.ldexp(self.sizes.reshape(-1)[rising], -lower[rising].astype(np.int32))
+        rising = rising[np.argsort(-looks, kind="stable")]
+        few, many = 0, len(rising)  # `few` are known to fit, or nothing does
+        while many - few > 1:
+            middle = (few + many) // 2
+            depths = lower.copy()
+            depths[rising[:middle]] = upper[rising[:middle]]
+            few, many = (middle, many) if count(depths) <= budget else (few, middle)
+        depths = lower.copy()
+        depths[rising[:few]] = upper[rising[:few]]
+        return depths

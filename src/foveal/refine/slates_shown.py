@@ -1,0 +1,88 @@
+"""Which triangles are shown: those of every patch of every placement, in runs that stay where they are."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _kernels_slates_show as kernels
+from .slates_arena import Arena
+from .slates_blocks import Places
+from .slates_cage import SlateCage
+
+__all__ = ["Shown"]
+
+Ints = NDArray[np.int64]
+
+
+class Shown:
+    """The triangles of `placements` times m patches. An entry is placement · m + patch.
+
+    Attributes
+    ----------
+    depths, sides : (placements · m,) int8, (4 · placements · m,) int8
+        Depths shown, -1 for holes, and the depths along sides.
+    triangles : int
+    places, counts : (placements · m,) int64
+        Of each entry's triangles in `rows`.
+    """
+
+    def __init__(self, cage: SlateCage, placements: int, /) -> None:
+        self._cage, count = cage, placements * len(cage.net.grid)
+        self._arena = Arena((3, np.int32))
+        self.depths, self.sides = np.full(count, -1, np.int8), np.full(4 * count, -1, np.int8)
+        self.places, self.counts = np.zeros(count, np.int64), np.zeros(count, np.int64)
+        self.triangles = 0
+
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """(rows, 3): of all that was ever lent; what is free now is (0, 0, 0)."""
+        return self._arena.columns[0][: self._arena.rows]
+
+    def along_sides(self, depths: NDArray[np.int8], /) -> NDArray[np.int8]:
+        """Of each entry's sides: the larger of the depths of the two patches."""
+        sides, m = np.empty(4 * len(depths), np.int8), len(self._cage.net.grid)
+        for i in range(0, len(depths), m):
+            kernels.edge_depths(self._cage.net, depths[i : i + m], sides[4 * i : 4 * (i + m)])
+        return sides
+
+    def count(self, depths: NDArray[np.int8], /) -> int:
+        """How many triangles these depths give."""
+        counts = np.empty(len(depths), np.int64)
+        return int(kernels.count_triangles(depths, self.along_sides(depths), counts))
+
+    def wanted(self, depths: NDArray[np.int8], sides: NDArray[np.int8], /) -> tuple[NDArray[np.int8], ...]:
+        """What all placements together need of the blocks (m,), and of the rims (4 m,).
+
+        A patch beside a deeper one is computed a step deeper than it is shown: hubs and cut edges lie there.
+        """
+        m = len(self._cage.net.grid)
+        is_fan = (sides.reshape(-1, 4) > depths[:, None]).any(axis=1)
+        blocks = (depths + is_fan).astype(np.int8).reshape(-1, m).max(axis=0)
+        rims = np.where(sides.reshape(-1, 4) > depths[:, None], sides.reshape(-1, 4), -1)
+        return blocks, rims.reshape(-1, 4 * m).max(axis=0)
+
+    def show(
+        self,
+        depths: NDArray[np.int8],
+        sides: NDArray[np.int8],
+        places: Places,
+        is_elsewhere: NDArray[np.bool_],
+        /,
+    ) -> Ints:
+        """Write the triangles that are others now; gives their entries."""
+        m = len(self._cage.net.grid)
+        is_other = (depths != self.depths) | (sides != self.sides).reshape(-1, 4).any(axis=1)
+        is_other |= np.tile(is_elsewhere, len(depths) // m) & (depths >= 0)
+        chosen = np.flatnonzero(is_other)
+        if len(chosen) == 0:
+            return chosen
+        self.depths, self.sides = depths, sides
+        old, counts = self.counts[chosen], np.empty(len(depths), np.int64)
+        self.triangles = int(kernels.count_triangles(depths, sides, counts))
+        self._arena.clear(0, self.places[chosen], old)
+        self._arena.release(self.places[chosen], old)
+        self.counts = counts
+        self.places[chosen] = self._arena.allocate(counts[chosen])
+        rows = self._arena.columns[0]
+        kernels.show(places, chosen, depths, sides, self.places, m, rows)
+        self._arena.clear(0, self.places[chosen], counts[chosen], counts[chosen])
+        return chosen
