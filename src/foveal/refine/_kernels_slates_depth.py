@@ -58,79 +58,89 @@ def curved(cosines, cone, most, out):
 
 
 @lean
-def spheres(net, points, out):
-    """out[f]: centre and radius of a ball with all that the patch is a mean of."""
+def spheres(net, work, points, out):
+    """out[f]: centre and radius of a ball that holds the limit patch.
+
+    It holds all points a step further that the patch is a mean of, which are those of its corners' rings: two
+    thirds of the radius that the control mesh's own points would take. The centre is the corners' mean, so
+    that a turned mesh has turned balls.
+    """
     for f in range(len(out)):
         for x in range(3):
-            low, high = np.inf, -np.inf
+            total = 0.0
             for k in range(4):
-                v = net.corners[4 * f + k]
-                for i in range(net.ring_starts[v], net.ring_starts[v + 1]):
-                    value = points[net.ring[i], x]
-                    low, high = min(low, value), max(high, value)
-            out[f, x] = 0.5 * (low + high)
+                total += points[net.corners[4 * f + k], x]
+            out[f, x] = 0.25 * total
         most = 0.0
         for k in range(4):
             v = net.corners[4 * f + k]
-            for i in range(net.ring_starts[v], net.ring_starts[v + 1]):
-                u = net.ring[i]
-                x, y, z = points[u, 0] - out[f, 0], points[u, 1] - out[f, 1], points[u, 2] - out[f, 2]
+            fill_ring(net, points, v, work.rings[0, 0], 0)
+            ring = work.rings[1, 0]
+            ring_step(net, v, 0, work.rings[0, 0], 0, ring, 0)
+            for i in range(0, 3 * (1 + net.ring_starts[v + 1] - net.ring_starts[v]), 3):
+                x, y, z = ring[i] - out[f, 0], ring[i + 1] - out[f, 1], ring[i + 2] - out[f, 2]
                 most = max(most, x * x + y * y + z * z)
         out[f, 3] = np.sqrt(most)
 
 
 @lean
-def classify(net, corner_points, normals, eye, epsilon, out):
-    """out[v]: BACK or FRONT if all normals at the vertex agree on it, else SILHOUETTE."""
-    for v in range(len(out)):
-        x, y, z = corner_points[v, 0] - eye[0], corner_points[v, 1] - eye[1], corner_points[v, 2] - eye[2]
-        length = np.sqrt(x * x + y * y + z * z)
-        is_back, is_front = True, True
-        for i in range(net.normal_starts[v], net.normal_starts[v + 1]):
-            dot = normals[i, 0] * x + normals[i, 1] * y + normals[i, 2] * z
-            is_back = is_back and dot > epsilon * length
-            is_front = is_front and dot < -epsilon * length
-        out[v] = BACK if is_back else FRONT if is_front else SILHOUETTE
+def classify(net, corner_points, normals, eyes, epsilon, out):
+    """out[i, v]: from eye i, BACK or FRONT if all normals at the vertex agree on it, else SILHOUETTE."""
+    for i in range(len(eyes)):
+        for v in range(len(corner_points)):
+            x, y = corner_points[v, 0] - eyes[i, 0], corner_points[v, 1] - eyes[i, 1]
+            z = corner_points[v, 2] - eyes[i, 2]
+            near = epsilon * np.sqrt(x * x + y * y + z * z)
+            is_back, is_front = True, True
+            for j in range(net.normal_starts[v], net.normal_starts[v + 1]):
+                dot = normals[j, 0] * x + normals[j, 1] * y + normals[j, 2] * z
+                is_back = is_back and dot > near
+                is_front = is_front and dot < -near
+            out[i, v] = BACK if is_back else FRONT if is_front else SILHOUETTE
 
 
 @lean
-def radii(balls, matrix, scale, eye, pixels_per_radian, out):
-    """out[f]: the ball's radius in pixels, once it is placed; infinite where the eye is in it."""
-    for f in range(len(out)):
-        away = 0.0
-        for i in range(3):
-            x = matrix[i, 3] - eye[i]
-            for j in range(3):
-                x += matrix[i, j] * balls[f, j]
-            away += x * x
-        radius = scale * balls[f, 3]
-        out[f] = pixels_per_radian * radius / np.sqrt(away) if away > radius * radius else np.inf
+def radii(balls, matrices, scales, eye, pixels_per_radian, out):
+    """out[i, f]: the ball's radius in pixels, as matrix i places it; infinite where the eye is in it."""
+    for i in range(len(matrices)):
+        for f in range(len(balls)):
+            away = 0.0
+            for x in range(3):
+                d = matrices[i, x, 3] - eye[x]
+                for y in range(3):
+                    d += matrices[i, x, y] * balls[f, y]
+                away += d * d
+            radius = scales[i] * balls[f, 3]
+            out[i, f] = pixels_per_radian * radius / np.sqrt(away) if away > radius * radius else np.inf
 
 
 @lean
 def choose(net, is_shown, curvature, classes, sizes, rules, most, out):
-    """out[f]: the depth by the rules: backs, silhouettes, the smallest and the largest piece in pixels."""
-    is_coarse_back, is_deep_silhouette, smallest, largest = rules[0] > 0, rules[1] > 0, rules[2], rules[3]
-    for f in range(len(out)):
-        if not is_shown[f]:
-            out[f] = -1
-            continue
-        depth, backs, fronts = 0, 0, 0
-        for k in range(4):
-            v = net.corners[4 * f + k]
-            depth = max(depth, min(curvature[v], most))
-            backs += classes[v] == BACK
-            fronts += classes[v] == FRONT
-        if backs == 4 and is_coarse_back:
-            out[f] = 0
-            continue
-        if is_deep_silhouette and backs < 4 and fronts < 4:
-            depth = (most + depth + 1) // 2
-        size = sizes[f] / (1 << depth)
-        while size > largest and depth < most:
-            depth += 1
-            size *= 0.5
-        while size < smallest and depth > 0:
-            depth -= 1
-            size *= 2.0
-        out[f] = depth
+    """out[i m + f]: the depth by the rules, of what placement i looks like."""
+    patches = len(is_shown)
+    for entry in range(len(out)):
+        i, f = entry // patches, entry % patches
+        out[entry] = by_rules(net, f, curvature, classes[i], sizes[i, f], rules, most) if is_shown[f] else -1
+
+
+@lean
+def by_rules(net, f, curvature, classes, size, rules, most):
+    """A patch's depth. Rules: backs are coarse, silhouettes deep; the smallest, largest size in pixels."""
+    depth, backs, fronts = 0, 0, 0
+    for k in range(4):
+        v = net.corners[4 * f + k]
+        depth = max(depth, min(curvature[v], most))
+        backs += classes[v] == BACK
+        fronts += classes[v] == FRONT
+    if backs == 4 and rules[0] > 0:
+        return 0
+    if rules[1] > 0 and backs < 4 and fronts < 4:
+        depth = (most + depth + 1) // 2
+    size /= 1 << depth
+    while size > rules[3] and depth < most:
+        depth += 1
+        size *= 0.5
+    while size < rules[2] and depth > 0:
+        depth -= 1
+        size *= 2.0
+    return depth

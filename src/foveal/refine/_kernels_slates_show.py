@@ -15,41 +15,118 @@ from ._kernels_slates import side_rows
 
 
 @lean
-def edge_depths(net, depths, out):
-    """out[4 f + k]: the depth of side k, the larger of those of its faces; -1 of what is not shown."""
-    for h in range(len(out)):
-        d = depths[h // 4]
-        if net.mates[h] >= 0 and d >= 0:
-            d = max(d, depths[net.mates[h] // 4])
-        out[h] = d
+def side_depth(net, depths, entry, k, patches):
+    """The depth of side k: the larger of those of its faces, in one placement; of what is not shown -1."""
+    f = entry % patches
+    beyond = net.mates[4 * f + k]
+    if beyond < 0 or depths[entry] < 0:
+        return depths[entry]
+    return max(depths[entry], depths[entry - f + beyond // 4])
 
 
 @lean
-def count_triangles(depths, sides, counts):
-    """Of each patch; their sum."""
+def edge_depths(net, depths, out):
+    """out[4 e + k]: the depth of side k of entry e."""
+    for entry in range(len(depths)):
+        for k in range(4):
+            out[4 * entry + k] = side_depth(net, depths, entry, k, len(net.grid))
+
+
+@lean
+def triangles_at(net, depths, entry, patches):
+    """Of an entry."""
+    return triangles_of(
+        depths[entry],
+        side_depth(net, depths, entry, 0, patches),
+        side_depth(net, depths, entry, 1, patches),
+        side_depth(net, depths, entry, 2, patches),
+        side_depth(net, depths, entry, 3, patches),
+    )
+
+
+@lean
+def count_triangles(net, depths):
+    """Of all entries."""
     total = 0
-    for f in range(len(depths)):
-        counts[f] = triangles_of(depths[f], sides, 4 * f)
-        total += counts[f]
+    for entry in range(len(depths)):
+        total += triangles_at(net, depths, entry, len(net.grid))
     return total
 
 
 @lean
-def triangles_of(d, sides, h):
-    """Of a patch of depth d whose sides' depths are sides[h:h + 4]."""
+def rise(net, depths, order, upper, budget, total):
+    """Take entries in order to their upper depth, as many as a budget allows; `total` are there before."""
+    patches = len(net.grid)
+    for entry in order:
+        depth = depths[entry]
+        more = -triangles_around(net, depths, entry, patches)
+        depths[entry] = upper[entry]
+        more += triangles_around(net, depths, entry, patches)
+        if total + more > budget:
+            depths[entry] = depth
+            break
+        total += more
+
+
+@lean
+def triangles_around(net, depths, entry, patches):
+    """Of an entry and those beside it, each once."""
+    f = entry % patches
+    total = triangles_at(net, depths, entry, patches)
+    for k in range(4):
+        beyond = net.mates[4 * f + k] // 4
+        is_first = beyond >= 0
+        for j in range(k):
+            is_first = is_first and net.mates[4 * f + j] // 4 != beyond
+        if is_first:
+            total += triangles_at(net, depths, entry - f + beyond, patches)
+    return total
+
+
+@lean
+def triangles_of_each(chosen, depths, sides, out):
+    """out[entry], of the chosen."""
+    for entry in chosen:
+        h = 4 * entry
+        out[entry] = triangles_of(depths[entry], sides[h], sides[h + 1], sides[h + 2], sides[h + 3])
+
+
+@lean
+def triangles_of(d, first, second, third, fourth):
+    """Of a patch of depth d with sides of these depths."""
     if d < 0:
         return 0
     n = 1 << d
-    rows = (1 if sides[h] > d else 0) + (1 if sides[h + 2] > d else 0)
-    columns = (1 if sides[h + 1] > d else 0) + (1 if sides[h + 3] > d else 0)
+    rows, columns = (first > d) + (third > d), (second > d) + (fourth > d)
     if rows + columns == 0:
         return 2 * n * n
     fans = 1 if n == 1 else (rows + columns) * n - rows * columns
-    pieces = 4 * fans
-    for k in range(4):
-        if sides[h + k] > d:
-            pieces += (1 << sides[h + k]) - n + 2 * (n - 1)
-    return 2 * (n * n - fans) + pieces
+    pieces = 4 * fans + (1 << first) + (1 << second) + (1 << third) + (1 << fourth) - 4 * n
+    return 2 * (n * n - fans) + pieces + (rows + columns) * 2 * (n - 1)
+
+
+@lean
+def gather_wanted(depths, sides, blocks, rims):
+    """The deepest block and rims that any placement wants of each patch; of rims those of fans alone."""
+    for entry in range(len(depths)):
+        f, d = entry % len(blocks), depths[entry]
+        is_fan = False
+        for k in range(4):
+            side = sides[4 * entry + k]
+            if side > d:
+                is_fan = True
+                rims[4 * f + k] = max(rims[4 * f + k], side)
+        blocks[f] = max(blocks[f], d + 1 if is_fan else d)
+
+
+@lean
+def compare(depths, old_depths, sides, old_sides, is_elsewhere, out):
+    """Which entries are to be written anew."""
+    for entry in range(len(out)):
+        is_other = depths[entry] != old_depths[entry]
+        for h in range(4 * entry, 4 * entry + 4):
+            is_other = is_other or sides[h] != old_sides[h]
+        out[entry] = is_other or (is_elsewhere[entry % len(is_elsewhere)] and depths[entry] >= 0)
 
 
 @lean

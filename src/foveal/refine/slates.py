@@ -20,6 +20,7 @@ from .slates_blocks import Blocks
 from .slates_cage import SlateCage
 from .slates_depth import Depths, Views
 from .slates_mesh import joined
+from .slates_placements import Placements
 from .slates_shown import Shown
 
 __all__ = ["SlateArrays", "Slates", "Tessellated", "slates"]
@@ -129,7 +130,7 @@ class Slates:
         if np.dtype(dtype) not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
         self._cage = SlateCage.of(self._mesh)
-        self._placements = _matrices(np.eye(4)[None] if placements is None else placements, name)
+        self._placements = Placements.of(placements, name=name)
         self._blocks = Blocks(self._cage, _columns(self._mesh), dtype)
         self._views = Views(self._cage, self._blocks)
         self._shown = Shown(self._cage, len(self._placements))
@@ -168,7 +169,7 @@ class Slates:
         """
         self._move(positions, placements)
         look = self._views.look(camera, depths or Depths(), self._placements)
-        chosen = look.depths() if budget is None else look.within(budget, self._shown.count)
+        chosen = look.depths() if budget is None else look.within(budget)
         return self._show(chosen)
 
     def show(self, depths: ArrayLike, /, *, positions: ArrayLike | None = None) -> Tessellated:
@@ -199,7 +200,7 @@ class Slates:
 
     def _move(self, positions: ArrayLike | None, placements: ArrayLike | None) -> None:
         if placements is not None:
-            matrices = _matrices(placements, self._name)
+            matrices = Placements.of(placements, name=self._name)
             if len(matrices) != len(self._placements):
                 raise FovealError(
                     f"{self._name}: there are {len(self._placements)} placements, got {len(matrices)}."
@@ -247,7 +248,7 @@ class Slates:
         Vertices of patches beside each other are one where place, normal and attributes agree, so that only
         creases, corners and placements are apart.
         """
-        return joined(self.arrays(), self._placements, has_colours=self._mesh.colours is not None)
+        return joined(self.arrays(), self._placements.matrices, has_colours=self._mesh.colours is not None)
 
     @property
     def bytes_beside(self) -> int:
@@ -286,15 +287,3 @@ def _columns(mesh: PolyMesh) -> list[Floats]:
     if mesh.uvs is not None:
         columns.append(np.column_stack([mesh.uvs, np.zeros(len(mesh.uvs))]))
     return columns
-
-
-def _matrices(values: ArrayLike, name: str) -> Floats:
-    matrices = np.asarray(values, np.float64)
-    is_right = matrices.ndim == 3 and matrices.shape[1:] == (4, 4) and len(matrices) > 0
-    if not is_right or not np.isfinite(matrices).all() or (matrices[:, 3] != [0, 0, 0, 1]).any():
-        raise FovealError(
-            f"{name}: placements must be 4 by 4 matrices of finite numbers with the last row 0 0 0 1."
-        )
-    if (np.linalg.det(matrices[:, :3, :3]) == 0).any():
-        raise FovealError(f"{name}: a placement flattens the surface; give matrices that can be inverted.")
-    return matrices

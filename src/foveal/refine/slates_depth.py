@@ -1,7 +1,6 @@
 """How deep each patch shall be for a view: by curvature, class, projected size, and a budget of triangles."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,9 +9,11 @@ from numpy.typing import NDArray
 from foveal.view.camera import Camera
 
 from . import _kernels_slates_depth as kernels
+from . import _kernels_slates_show as show
 from ._kernels_slates_layout import MOST_DEPTH
 from .slates_blocks import Blocks
-from .slates_cage import SlateCage
+from .slates_cage import SlateCage, SlateNet
+from .slates_placements import Placements
 from .slates_work import Work
 
 __all__ = ["Depths", "Views"]
@@ -77,13 +78,16 @@ class Views:
         self._is_open = bool((cage.net.mates < 0).any())
         self.forget()
 
+    @property
+    def net(self) -> SlateNet:
+        """Of the control mesh."""
+        return self._cage.net
+
     def forget(self) -> None:
         """The control mesh moved."""
-        net, points = self._cage.net, self._blocks.points[0]
         self._cosines: Floats | None = None
         self._curvature: tuple[tuple[float | None, int], Levels] | None = None
-        self._balls = np.empty((len(net.grid), 4))
-        kernels.spheres(net, points, self._balls)
+        self._balls: Floats | None = None
 
     def curvature(self, cone: float | None, most: int, /) -> Levels:
         """(n,): the depth that each vertex needs, by the cone of normals."""
@@ -102,31 +106,30 @@ class Views:
         self._curvature = key, levels
         return levels
 
-    def look(self, camera: Camera, rules: Depths, placements: Floats, /) -> "Look":
-        """Of one view, for each placement (k, 4, 4)."""
-        net, m = self._cage.net, len(self._cage.net.grid)
-        classes = np.empty((len(placements), len(self._blocks.points[0])), np.int8)
-        sizes = np.empty((len(placements), m))
-        for i, matrix in enumerate(placements):
-            eye = np.linalg.solve(matrix, [*camera.position, 1.0])[:3]
-            corners = self._blocks.corner_points[0], self._blocks.corner_normals
-            kernels.classify(net, *corners, eye, rules.epsilon, classes[i])
-            scale = float(np.linalg.norm(matrix[:3, :3], 2))
-            view = camera.position, camera.pixels_per_radian()
-            kernels.radii(self._balls, matrix, scale, *view, sizes[i])
+    def look(self, camera: Camera, rules: Depths, placements: Placements, /) -> "Look":
+        """Of one view, for each placement."""
+        net, points = self._cage.net, self._blocks.corner_points[0]
+        if self._balls is None:
+            self._balls = np.empty((len(net.grid), 4))
+            kernels.spheres(net, Work.of(net, 0), self._blocks.points[0], self._balls)
+        classes = np.empty((len(placements.matrices), len(points)), np.int8)
+        sizes = np.empty((len(placements.matrices), len(net.grid)))
+        eyes = placements.inverses[:, :3, :3] @ camera.position + placements.inverses[:, :3, 3]
+        kernels.classify(net, points, self._blocks.corner_normals, eyes, rules.epsilon, classes)
+        view = camera.position, camera.pixels_per_radian()
+        kernels.radii(self._balls, placements.matrices, placements.scales, *view, sizes)
         return Look(self, rules, classes, sizes)
 
     def depths(self, look: "Look", most: int, /) -> Levels:
         """(k m,): by the rules, none deeper than `most`."""
-        rules, m = look.rules, len(self._cage.net.grid)
+        rules = look.rules
         smallest, largest = rules.size_px or (0.0, math.inf)
         words = np.array([rules.backs and not self._is_open, rules.silhouettes, smallest, largest], float)
         curvature = self.curvature(rules.cone, rules.most)
-        out = np.empty(len(look.sizes) * m, np.int8)
-        shown = self._cage.is_shown
-        for i, (classes, sizes) in enumerate(zip(look.classes, look.sizes, strict=True)):
-            part = out[i * m : (i + 1) * m]
-            kernels.choose(self._cage.net, shown, curvature, classes, sizes, words, most, part)
+        out = np.empty(look.sizes.size, np.int8)
+        kernels.choose(
+            self._cage.net, self._cage.is_shown, curvature, look.classes, look.sizes, words, most, out
+        )
         return out
 
 
@@ -143,33 +146,24 @@ class Look:
         """(k m,): by the rules."""
         return self.views.depths(self, self.rules.most)
 
-    def within(self, budget: int, count: Callable[[Levels], int], /) -> Levels:
+    def within(self, budget: int, /) -> Levels:
         """(k m,): as deep as the rules and a budget of triangles allow.
 
         First the maximum depth is lowered until the budget holds, then patches rise to the next, those
         that look largest first, as many as may: a function of the view alone. More triangles than the
         budget only where nothing is subdivided.
         """
-        upper = self.depths()
-        if count(upper) <= budget:
+        net, upper = self.views.net, self.depths()
+        if int(show.count_triangles(net, upper)) <= budget:
             return upper
         for most in range(self.rules.most - 1, -1, -1):
             lower = self.views.depths(self, most)
-            if count(lower) <= budget or most == 0:
-                return self._between(lower, upper, budget, count)
+            total = int(show.count_triangles(net, lower))
+            if total <= budget:
+                rising = np.flatnonzero(upper > lower)
+                looks = np.ldexp(self.sizes.reshape(-1)[rising], -lower[rising].astype(np.int32))
+                rising = rising[np.argsort(-looks, kind="stable")]
+                show.rise(net, lower, rising, upper, budget, total)
+                return lower
             upper = lower
-        return self.views.depths(self, 0)
-
-    def _between(self, lower: Levels, upper: Levels, budget: int, count: Callable[[Levels], int]) -> Levels:
-        rising = np.flatnonzero(upper > lower)
-        looks = np.ldexp(self.sizes.reshape(-1)[rising], -lower[rising].astype(np.int32))
-        rising = rising[np.argsort(-looks, kind="stable")]
-        few, many = 0, len(rising)  # `few` are known to fit, or nothing does
-        while many - few > 1:
-            middle = (few + many) // 2
-            depths = lower.copy()
-            depths[rising[:middle]] = upper[rising[:middle]]
-            few, many = (middle, many) if count(depths) <= budget else (few, middle)
-        depths = lower.copy()
-        depths[rising[:few]] = upper[rising[:few]]
-        return depths
+        return upper

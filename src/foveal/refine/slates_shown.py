@@ -39,15 +39,9 @@ class Shown:
 
     def along_sides(self, depths: NDArray[np.int8], /) -> NDArray[np.int8]:
         """Of each entry's sides: the larger of the depths of the two patches."""
-        sides, m = np.empty(4 * len(depths), np.int8), len(self._cage.net.grid)
-        for i in range(0, len(depths), m):
-            kernels.edge_depths(self._cage.net, depths[i : i + m], sides[4 * i : 4 * (i + m)])
+        sides = np.empty(4 * len(depths), np.int8)
+        kernels.edge_depths(self._cage.net, depths, sides)
         return sides
-
-    def count(self, depths: NDArray[np.int8], /) -> int:
-        """How many triangles these depths give."""
-        counts = np.empty(len(depths), np.int64)
-        return int(kernels.count_triangles(depths, self.along_sides(depths), counts))
 
     def wanted(self, depths: NDArray[np.int8], sides: NDArray[np.int8], /) -> tuple[NDArray[np.int8], ...]:
         """What all placements together need of the blocks (m,), and of the rims (4 m,).
@@ -55,10 +49,9 @@ class Shown:
         A patch beside a deeper one is computed a step deeper than it is shown: hubs and cut edges lie there.
         """
         m = len(self._cage.net.grid)
-        is_fan = (sides.reshape(-1, 4) > depths[:, None]).any(axis=1)
-        blocks = (depths + is_fan).astype(np.int8).reshape(-1, m).max(axis=0)
-        rims = np.where(sides.reshape(-1, 4) > depths[:, None], sides.reshape(-1, 4), -1)
-        return blocks, rims.reshape(-1, 4 * m).max(axis=0)
+        blocks, rims = np.full(m, -1, np.int8), np.full(4 * m, -1, np.int8)
+        kernels.gather_wanted(depths, sides, blocks, rims)
+        return blocks, rims
 
     def show(
         self,
@@ -70,17 +63,17 @@ class Shown:
     ) -> Ints:
         """Write the triangles that are others now; gives their entries."""
         m = len(self._cage.net.grid)
-        is_other = (depths != self.depths) | (sides != self.sides).reshape(-1, 4).any(axis=1)
-        is_other |= np.tile(is_elsewhere, len(depths) // m) & (depths >= 0)
+        is_other = np.empty(len(depths), np.bool_)
+        kernels.compare(depths, self.depths, sides, self.sides, is_elsewhere, is_other)
         chosen = np.flatnonzero(is_other)
         if len(chosen) == 0:
             return chosen
         self.depths, self.sides = depths, sides
-        old, counts = self.counts[chosen], np.empty(len(depths), np.int64)
-        self.triangles = int(kernels.count_triangles(depths, sides, counts))
+        old, counts = self.counts[chosen], self.counts
         self._arena.clear(0, self.places[chosen], old)
         self._arena.release(self.places[chosen], old)
-        self.counts = counts
+        kernels.triangles_of_each(chosen, depths, sides, counts)
+        self.triangles += int(counts[chosen].sum() - old.sum())
         self.places[chosen] = self._arena.allocate(counts[chosen])
         rows = self._arena.columns[0]
         kernels.show(places, chosen, depths, sides, self.places, m, rows)
