@@ -31,15 +31,21 @@ def room(kind):
 
 
 @lean
-def allocate(sizes, places, heads, links, top):
-    """Places for runs; what does not fit in what was given back begins at `top`, which is returned anew."""
+def allocate(sizes, places, heads, nodes, top):
+    """Places for runs; what does not fit in what was given back begins at `top`, which is returned anew.
+
+    nodes[i]: a place that was given back, and the next of its size; heads[-1]: the first node not in
+    use, heads[-2]: how many are.
+    """
     for i in range(len(sizes)):
         kind = class_of(sizes[i])
+        node = heads[kind]
         if kind == 0:
             places[i] = 0
-        elif heads[kind] >= 0:
-            places[i] = heads[kind]
-            heads[kind] = links[places[i]]
+        elif node >= 0:
+            places[i], heads[kind] = nodes[node, 0], nodes[node, 1]
+            nodes[node, 1], heads[-1] = heads[-1], node
+            heads[-2] -= 1
         else:
             places[i] = top
             top += room(kind)
@@ -47,13 +53,15 @@ def allocate(sizes, places, heads, links, top):
 
 
 @lean
-def release(sizes, places, heads, links):
-    """Give runs back."""
+def release(sizes, places, heads, nodes):
+    """Give runs back; there must be as many nodes not in use."""
     for i in range(len(sizes)):
         kind = class_of(sizes[i])
         if kind > 0:
-            links[places[i]] = heads[kind]
-            heads[kind] = places[i]
+            node = heads[-1]
+            heads[-1] = nodes[node, 1]
+            nodes[node, 0], nodes[node, 1], heads[kind] = places[i], heads[kind], node
+            heads[-2] += 1
 
 
 @lean

@@ -27,22 +27,36 @@ class Arena:
         self.columns: list[NDArray[Any]] = [np.zeros((0, width), dtype) for width, dtype in columns]
         self.rows = 0
         self._heads = np.full(kernels.CLASSES, -1, np.int64)
-        self._links = np.zeros(0, np.int64)
+        self._heads[-2] = 0
+        self._nodes = np.zeros((0, 2), np.int64)
 
     def allocate(self, sizes: Ints, /) -> Ints:
         """(k,): the first rows of runs of these sizes."""
         places = np.empty(len(sizes), np.int64)
-        self.rows = int(kernels.allocate(sizes, places, self._heads, self._links, self.rows))
-        if self.rows > len(self._links):
+        self.rows = int(kernels.allocate(sizes, places, self._heads, self._nodes, self.rows))
+        room = len(self.columns[0])
+        if self.rows > room:
             # By a half more: twice the room would be twice the memory of a mesh that never grows again.
-            more = max(self.rows, len(self._links) * 3 // 2)
-            self._links = _longer(self._links, more)
+            more = max(self.rows, room * 3 // 2)
             self.columns = [_longer(column, more) for column in self.columns]
         return places
 
     def release(self, places: Ints, sizes: Ints, /) -> None:
         """Runs that are needed no more."""
-        kernels.release(sizes, places, self._heads, self._links)
+        self._add_nodes(len(places))
+        kernels.release(sizes, places, self._heads, self._nodes)
+
+    def _add_nodes(self, count: int) -> None:
+        """Have at least so many that are not in use."""
+        before = len(self._nodes)
+        missing = int(self._heads[-2]) + count - before
+        if missing <= 0:
+            return
+        more = max(missing, before // 2)
+        self._nodes = _longer(self._nodes, before + more)
+        fresh = np.arange(before, before + more)
+        self._nodes[before:, 1] = np.append(fresh[1:], self._heads[-1])
+        self._heads[-1] = before
 
     def clear(self, column: int, places: Ints, sizes: Ints, used: Ints | None = None, /) -> None:
         """Make rows of runs zero, from `used` of each on."""
@@ -52,7 +66,7 @@ class Arena:
     @property
     def bytes_used(self) -> int:
         """Of all columns, and of what is kept about them."""
-        return sum(column.nbytes for column in self.columns) + self._links.nbytes
+        return sum(column.nbytes for column in self.columns) + self._nodes.nbytes
 
 
 def _longer(column: NDArray[Any], rows: int) -> NDArray[Any]:

@@ -17,6 +17,7 @@ __all__ = ["SlateCage", "SlateNet"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Indices = NDArray[np.int32]
 
 
 class SlateNet(NamedTuple):
@@ -24,66 +25,63 @@ class SlateNet(NamedTuple):
 
     Attributes
     ----------
-    corners : (4 m,) int64
+    corners : (4 m,) int32
         Counter-clockwise; side k of a patch goes from corner k to k + 1.
-    mates : (4 m,) int64
+    mates : (4 m,) int32
         The same edge seen from its other face, or -1.
-    edge : (4 m,) int64
-        Its number.
-    grid : (m, 16) int64
+    grid : (m, 16) int32
         The vertices of the table at depth 0.
-    ring_starts : (n + 1,) int64
-    ring : (r,) int64
+    ring_starts : (n + 1,) int32
+    ring : (r,) int32
         Of each vertex its spokes e_i, then f_i across its faces, from the ring's own first.
     spokes : (r,) float64
         The spokes' sharpness, where spokes are.
-    fans, kinds, vertex_sharp : (n,) int64, int8, float64
+    fans, kinds, vertex_sharp : (n,) int32, int8, float64
         Faces at a vertex; REGULAR, SMOOTH or TAGGED; its own sharpness.
-    place : (4 m,) int64
+    place : (4 m,) int32
         Which spoke of its vertex's ring a corner's edge is.
-    fan_starts, fan : (n + 1,) int64, (4 m,) int64
+    fan_starts, fan : (n + 1,) int32, (4 m,) int32
         The corners around a vertex, in the ring's order.
     sharp : (4 m,) float64
         Of sides; infinite at borders.
-    side_class : (4 m,) int64
+    side_class : (4 m,) int32
         A row of `side_masks` of a semi-sharp side.
     side_masks : (s, MOST_DEPTH + 1, 8) float64
-    mask_of : (n,) int64
+    mask_of : (n,) int32
         A vertex's mask, which `mask_starts` places in `weights`, a row after the other.
-    mask_starts, weights : (w + 1,) int64, (q,) float64
-    sectors : (t, 4) int64
+    mask_starts, weights : (w + 1,) int32, (q,) float64
+    sectors : (t, 4) int32
         First row and number of the pairs, first row and number of the areas.
-    sector_starts : (w + 1,) int64
+    sector_starts : (w + 1,) int32
         Of masks in `sectors`.
-    normal_starts : (n + 1,) int64
+    normal_starts : (n + 1,) int32
         A normal for each sector of a vertex.
-    normal_of : (4 m,) int64
+    normal_of : (4 m,) int32
         The normal at a corner.
     """
 
-    corners: Ints
-    mates: Ints
-    edge: Ints
-    grid: Ints
-    ring_starts: Ints
-    ring: Ints
+    corners: Indices
+    mates: Indices
+    grid: Indices
+    ring_starts: Indices
+    ring: Indices
     spokes: Floats
-    fans: Ints
+    fans: Indices
     kinds: NDArray[np.int8]
     vertex_sharp: Floats
-    place: Ints
-    fan_starts: Ints
-    fan: Ints
+    place: Indices
+    fan_starts: Indices
+    fan: Indices
     sharp: Floats
-    side_class: Ints
+    side_class: Indices
     side_masks: Floats
-    mask_of: Ints
-    mask_starts: Ints
+    mask_of: Indices
+    mask_starts: Indices
     weights: Floats
-    sectors: Ints
-    sector_starts: Ints
-    normal_starts: Ints
-    normal_of: Ints
+    sectors: Indices
+    sector_starts: Indices
+    normal_starts: Indices
+    normal_of: Indices
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,14 +97,12 @@ class SlateCage:
         Which face of the mesh a quadrangle is of.
     is_shown : (m,) bool
         False for holes, as the boundary rule "none" leaves.
-    edges : int
     """
 
     net: SlateNet
     first: Any
     faces: Ints
     is_shown: NDArray[np.bool_]
-    edges: int
 
     @classmethod
     def of(cls, mesh: PolyMesh, /) -> "SlateCage":
@@ -119,7 +115,7 @@ class SlateCage:
             faces = np.repeat(faces, np.diff(polygons.starts))
             polygons, first = polygons.stepped()
             steps = max(steps - 1, 0)
-        return cls(_net(polygons, steps), first, faces, ~is_hole[faces], len(polygons.ends))
+        return cls(_net(polygons, steps), first, faces, ~is_hole[faces])
 
     def points(self, positions: NDArray[Any], /) -> Floats:
         """(n, d): of the quadrangles' vertices, of any columns on the mesh's."""
@@ -167,11 +163,13 @@ def _net(polygons: Polygons, steps: int) -> SlateNet:
     tables = [side_masks(float(s)) for s in classes] or [np.zeros((MOST_DEPTH + 1, 8))]
     rings = ring_starts, spokes, fans, borders, is_tagged, polygons.vertex_sharp
     numbers, masks = _masks(*rings, steps)
-    return SlateNet(
-        *(corners, mates, polygons.edge, grid, ring_starts, ring, spokes, fans, kinds),
-        *(polygons.vertex_sharp, place, fan_starts, fan, sharp, class_of, np.array(tables)),
+    parts: list[Any] = [
+        *(corners, mates, grid, ring_starts, ring, spokes, fans, kinds, polygons.vertex_sharp),
+        *(place, fan_starts, fan, sharp, class_of, np.array(tables)),
         *_tables(numbers, masks, corners, place),
-    )
+    ]
+    # Indices as int32: half of what a prepared control mesh takes.
+    return SlateNet(*(a.astype(np.int32) if a.dtype == np.int64 else a for a in parts))
 
 
 def _masks(
