@@ -7,9 +7,10 @@ from .hidden import Hidden
 from .rgb import Rgb, rgb
 from .rgb_edges import Edges, by_distance, by_length
 from .sharp import sharp_edges
-from .slates import SlateArrays, Slates, Tessellated, slates
+from .slates import Slates, slates
 from .slates_depth import Depths
 from .slates_rate import FrameRate
+from .slates_result import SlateArrays, Tessellated
 from .sqrt3 import Sqrt3, Update, sqrt3
 from .uniform import butterfly, loop
 

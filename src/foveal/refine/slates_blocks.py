@@ -14,7 +14,7 @@ from ._kernels_slates import tessellate
 from ._kernels_slates_cage import touched
 from ._kernels_slates_rims import rims
 from ._kernels_slates_vertices import vertex_limits
-from .slates_arena import Arena
+from .slates_arena import Arena, ranges
 from .slates_cage import SlateCage
 from .slates_work import Rows, Work
 
@@ -51,6 +51,8 @@ class Blocks:
         Of the quadrangles' vertices: positions, then further columns by three.
     corner_points, corner_normals : list of (n, 3) float64, (t, 3) float64
         Limits at vertices.
+    changed : (r, 2) int64
+        Ranges of rows that the last `ensure` wrote.
     """
 
     def __init__(self, cage: SlateCage, columns: list[Floats], dtype: DTypeLike, /) -> None:
@@ -67,6 +69,7 @@ class Blocks:
         self.corner_normals = np.zeros((normals, 3))
         self._spare = np.zeros((normals, 3)) if len(columns) > 1 else self.corner_normals
         self._is_stale = np.zeros(m, np.bool_)
+        self.changed = np.zeros((0, 2), np.int64)
         self._limits(np.arange(len(self.points[0])))
 
     def _limits(self, vertices: Ints) -> None:
@@ -144,6 +147,8 @@ class Blocks:
 
     def _compute(self, patches: Ints, sides: Ints) -> None:
         here, net = self.places, self._cage.net
+        sizes = _rows_of(here.depths[patches]), _points_of(here.rim_depths[sides])
+        self.changed = ranges(np.concatenate([here.places[patches], here.rims[sides]]), np.concatenate(sizes))
         depths, rim_depths = here.depths[patches], here.rim_depths[sides].astype(np.int64)
         deepest = max(int(depths.max(initial=0)), int(rim_depths.max(initial=0)))
         if deepest > self._depth:

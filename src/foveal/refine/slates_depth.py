@@ -46,8 +46,15 @@ class Depths:
 
     Examples
     --------
-    >>> Depths(most=3, cone=None, backs=False, silhouettes=False, size_px=None)  # depth 3 everywhere
-    Depths(most=3, cone=None, backs=False, silhouettes=False, epsilon=0.1, size_px=None)
+    >>> from foveal.mesh.poly_shapes import cube
+    >>> from foveal.refine import Slates
+    >>> from foveal.view.camera import Camera
+    >>> surface, camera = Slates(cube()), Camera.of([0, 0, 9], [0, 0, 0])
+    >>> surface.update(camera, depths=Depths(cone=None, backs=False, silhouettes=False, size_px=None)).deepest
+    5
+    >>> _ = surface.update(camera, depths=Depths(most=4, size_px=None))
+    >>> surface.arrays().depths  # the face away, the one in front, and those at the silhouette
+    array([[0, 3, 4, 4, 4, 4]], dtype=int8)
     """
 
     most: int = 5

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_slates_show as kernels
-from .slates_arena import Arena
+from .slates_arena import Arena, ranges
 from .slates_blocks import Places
 from .slates_cage import SlateCage
 
@@ -23,6 +23,8 @@ class Shown:
     triangles : int
     places, counts : (placements · m,) int64
         Of each entry's triangles in `rows`.
+    changed : (r, 2) int64
+        Ranges of rows that the last `show` wrote.
     """
 
     def __init__(self, cage: SlateCage, placements: int, /) -> None:
@@ -31,6 +33,7 @@ class Shown:
         self.depths, self.sides = np.full(count, -1, np.int8), np.full(4 * count, -1, np.int8)
         self.places, self.counts = np.zeros(count, np.int64), np.zeros(count, np.int64)
         self.triangles = 0
+        self.changed = np.zeros((0, 2), np.int64)
 
     @property
     def rows(self) -> NDArray[np.int32]:
@@ -66,16 +69,20 @@ class Shown:
         is_other = np.empty(len(depths), np.bool_)
         kernels.compare(depths, self.depths, sides, self.sides, is_elsewhere, is_other)
         chosen = np.flatnonzero(is_other)
+        self.changed = np.zeros((0, 2), np.int64)
         if len(chosen) == 0:
             return chosen
         self.depths, self.sides = depths, sides
-        old, counts = self.counts[chosen], self.counts
-        self._arena.clear(0, self.places[chosen], old)
-        self._arena.release(self.places[chosen], old)
+        old, before, counts = self.counts[chosen], self.places[chosen], self.counts
+        self._arena.clear(0, before, old)
+        self._arena.release(before, old)
         kernels.triangles_of_each(chosen, depths, sides, counts)
         self.triangles += int(counts[chosen].sum() - old.sum())
         self.places[chosen] = self._arena.allocate(counts[chosen])
         rows = self._arena.columns[0]
         kernels.show(places, chosen, depths, sides, self.places, m, rows)
         self._arena.clear(0, self.places[chosen], counts[chosen], counts[chosen])
+        self.changed = ranges(
+            np.concatenate([before, self.places[chosen]]), np.concatenate([old, counts[chosen]])
+        )
         return chosen
