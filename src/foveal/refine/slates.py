@@ -17,6 +17,7 @@ from .slates_blocks import Blocks
 from .slates_cage import SlateCage
 from .slates_depth import Depths, Views
 from .slates_mesh import joined
+from .slates_pairs import paired
 from .slates_placements import Placements
 from .slates_result import SlateArrays, Tessellated
 from .slates_shown import Shown
@@ -40,6 +41,8 @@ class Slates:
     placements : (k, 4, 4) float, optional
         Where the surface stands: matrices from its own space to that of the camera, invertible, the last row
         0 0 0 1. Each placement has its own depths and triangles; all share points and normals.
+    pair_triangles : bool
+        Of a TriMesh: join triangles in pairs first, as `paired` does. Half the patches, on another surface.
     dtype : float64 or float32
         Of positions and normals that come out; all is computed in float64.
     name : str
@@ -68,10 +71,17 @@ class Slates:
         /,
         *,
         placements: ArrayLike | None = None,
+        pair_triangles: bool = False,
         dtype: DTypeLike = np.float64,
         name: str = "mesh",
     ) -> None:
-        polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
+        if isinstance(mesh, TriMesh):
+            triangles = PolyMesh.of_triangles(mesh).checked(name)
+            polygons = paired(mesh) if pair_triangles else triangles
+        elif pair_triangles:
+            raise ValueError("pair_triangles is for a TriMesh")
+        else:
+            polygons = mesh
         self._mesh, self._name = polygons.checked(name), name
         if np.dtype(dtype) not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
