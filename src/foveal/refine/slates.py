@@ -194,7 +194,7 @@ class Slates:
         >>> surface.changed()
         (array([[ 0, 24]]), array([[ 0, 12]]))
         """
-        return self._blocks.changed, self._shown.changed
+        return self._blocks.changed(), self._shown.changed()
 
     @property
     def patches(self) -> int:

@@ -51,8 +51,6 @@ class Blocks:
         Of the quadrangles' vertices: positions, then further columns by three.
     corner_points, corner_normals : list of (n, 3) float64, (t, 3) float64
         Limits at vertices.
-    changed : (r, 2) int64
-        Ranges of rows that the last `ensure` wrote.
     """
 
     def __init__(self, cage: SlateCage, columns: list[Floats], dtype: DTypeLike, /) -> None:
@@ -69,7 +67,7 @@ class Blocks:
         self.corner_normals = np.zeros((normals, 3))
         self._spare = np.zeros((normals, 3)) if len(columns) > 1 else self.corner_normals
         self._is_stale = np.zeros(m, np.bool_)
-        self.changed = np.zeros((0, 2), np.int64)
+        self._written = np.zeros(0, np.int64), np.zeros(0, np.int64)
         self._limits(np.arange(len(self.points[0])))
 
     def _limits(self, vertices: Ints) -> None:
@@ -92,6 +90,12 @@ class Blocks:
         """Positions, normals, further columns by three: (rows, 3) each, of all that was ever computed."""
         columns = self._arena.columns
         return [column[: self._arena.rows] for column in (columns[0], columns[-1], *columns[1:-1])]
+
+    def changed(self) -> Ints:
+        """(r, 2): ranges of rows that the last `ensure` wrote."""
+        here, (patches, sides) = self.places, self._written
+        sizes = _rows_of(here.depths[patches]), _points_of(here.rim_depths[sides])
+        return ranges(np.concatenate([here.places[patches], here.rims[sides]]), np.concatenate(sizes))
 
     def ensure(self, depths: NDArray[np.int8], sides: NDArray[np.int8], /) -> tuple[NDArray[np.bool_], Ints]:
         """Blocks and rims as deep as wanted, at least.
@@ -147,8 +151,7 @@ class Blocks:
 
     def _compute(self, patches: Ints, sides: Ints) -> None:
         here, net = self.places, self._cage.net
-        sizes = _rows_of(here.depths[patches]), _points_of(here.rim_depths[sides])
-        self.changed = ranges(np.concatenate([here.places[patches], here.rims[sides]]), np.concatenate(sizes))
+        self._written = patches, sides
         depths, rim_depths = here.depths[patches], here.rim_depths[sides].astype(np.int64)
         deepest = max(int(depths.max(initial=0)), int(rim_depths.max(initial=0)))
         if deepest > self._depth:
