@@ -168,8 +168,7 @@ class Slates:
                 raise FovealError(
                     f"{self._name}: positions must be {len(self._mesh.positions)} times three finite numbers."
                 )
-            self._blocks.move(points)
-            self._views.forget()
+            self._views.move(*self._blocks.move(points))
 
     def _show(self, depths: NDArray[np.int8]) -> Tessellated:
         sides = self._shown.along_sides(depths)

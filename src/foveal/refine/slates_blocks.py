@@ -75,15 +75,16 @@ class Blocks:
             normals = self._spare if i else self.corner_normals
             vertex_limits(self._cage.net, points, vertices, self.corner_points[i], normals)
 
-    def move(self, positions: Floats, /) -> NDArray[np.bool_]:
-        """New positions of the control mesh; (m,) which patches are to be made anew."""
+    def move(self, positions: Floats, /) -> tuple[Ints, Ints]:
+        """New positions of the control mesh; which vertices and patches have some that moved in their rings."""
         net, points = self._cage.net, self._cage.points(positions)
         is_vertex, is_patch = np.empty(len(points), np.bool_), np.empty(len(net.grid), np.bool_)
         touched(net, (points != self.points[0]).any(axis=1), is_vertex, is_patch)
         self.points[0] = points
-        self._limits(np.flatnonzero(is_vertex))
+        vertices = np.flatnonzero(is_vertex)
+        self._limits(vertices)
         self._is_stale |= is_patch
-        return is_patch
+        return vertices, np.flatnonzero(is_patch)
 
     @property
     def rows(self) -> list[NDArray[Any]]:
