@@ -76,7 +76,7 @@ class Blocks:
             vertex_limits(self._cage.net, points, vertices, self.corner_points[i], normals)
 
     def move(self, positions: Floats, /) -> tuple[Ints, Ints]:
-        """New positions of the control mesh; which vertices and patches have some that moved in their rings."""
+        """New positions of the control mesh; which vertices and patches have such in their rings."""
         net, points = self._cage.net, self._cage.points(positions)
         is_vertex, is_patch = np.empty(len(points), np.bool_), np.empty(len(net.grid), np.bool_)
         touched(net, (points != self.points[0]).any(axis=1), is_vertex, is_patch)
