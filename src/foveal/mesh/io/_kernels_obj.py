@@ -8,15 +8,15 @@ from foveal.base.jit import kernel
 from ._kernels import parse_number
 
 # Bits of `wanted`: which lines are read. Others are passed by, those of vertices counted.
-POINTS, UVS, NORMALS, FACES, MATERIALS = 1, 2, 4, 8, 16
+POINTS, UVS, NORMALS, FACES, MATERIALS, TAGS = 1, 2, 4, 8, 16, 32
 # `counts`, kept over the whole file: vertices, texture coordinates, normals, corners whose normal is
 # not the vertex's own number, polygons of fewer than three corners.
 VERTICES, COORDINATES, DIRECTIONS, STRAY, SMALL = 0, 1, 2, 3, 4
 COUNTS_SIZE = 5
 # `result`, of one call: rows filled, then what stopped it.
-POINT_ROWS, UV_ROWS, NORMAL_ROWS, TRIANGLES, DOUBTS, FAULT, FAULT_AT = 0, 1, 2, 3, 4, 5, 6
-RESULT_SIZE = 7
-BAD_NUMBERS, BAD_CORNER, BAD_INDEX, MATERIAL_LINE = 1, 2, 3, 4
+POINT_ROWS, UV_ROWS, NORMAL_ROWS, TRIANGLES, POLYGONS, DOUBTS, FAULT, FAULT_AT = 0, 1, 2, 3, 4, 5, 6, 7
+RESULT_SIZE = 8
+BAD_NUMBERS, BAD_CORNER, BAD_INDEX, STATEMENT = 1, 2, 3, 4
 SLOW_COLUMNS = 4  # begin, end, flat index, table (0 points, 1 uvs, 2 normals)
 
 
@@ -95,8 +95,8 @@ def _parse_corner(buffer, at, end, corner):
 
 
 @kernel
-def _parse_face(buffer, at, end, counts, triangles, triangle_uvs, filled, corner):
-    """Read a polygon as a fan: where it stops, triangles now, and a fault or 0."""
+def _parse_face(buffer, at, end, counts, triangles, triangle_uvs, sizes, filled, polygons, corner):
+    """Read a polygon as a fan: where it stops, triangles and polygons now, and a fault or 0."""
     seen = 0
     first, last, first_uv, last_uv = np.int64(0), np.int64(0), np.int64(0), np.int64(0)
     while True:
@@ -105,11 +105,11 @@ def _parse_face(buffer, at, end, counts, triangles, triangle_uvs, filled, corner
             break
         at, is_good = _parse_corner(buffer, at, end, corner)
         if not is_good:
-            return at, filled, BAD_CORNER
+            return at, filled, polygons, BAD_CORNER
         for part in range(3):  # from 1-based and relative to 0-based, -1 where absent
             corner[part] += counts[part] if corner[part] < 0 else -1
         if corner[0] < 0:
-            return at, filled, BAD_INDEX
+            return at, filled, polygons, BAD_INDEX
         counts[STRAY] += 1 if corner[2] != corner[0] else 0
         if seen == 0:
             first, first_uv = corner[0], corner[1]
@@ -120,13 +120,19 @@ def _parse_face(buffer, at, end, counts, triangles, triangle_uvs, filled, corner
             filled += 1
         last, last_uv = corner[0], corner[1]
         seen += 1
-    counts[SMALL] += 1 if seen < 3 else 0
-    return at, filled, 0
+    if seen < 3:
+        counts[SMALL] += 1
+    else:
+        sizes[polygons] = seen
+        polygons += 1
+    return at, filled, polygons, 0
 
 
 @kernel
-def parse_lines(buffer, at, wanted, counts, points, uvs, normals, triangles, triangle_uvs, slow, result):
-    """Read whole lines from `at` on, and return where it stopped: at the end, a fault, a material line.
+def parse_lines(
+    buffer, at, wanted, counts, points, uvs, normals, triangles, triangle_uvs, sizes, slow, result
+):
+    """Read whole lines from `at` on, and return where it stopped: at the end, a fault, a statement.
 
     A point's row is x, y, z, red, green, blue; red is -1 where the line has no colour.
     """
@@ -171,11 +177,14 @@ def parse_lines(buffer, at, wanted, counts, points, uvs, normals, triangles, tri
                 result[NORMAL_ROWS] += 1
             counts[DIRECTIONS] += 1
         elif c == 102 and _is_blank(c1) and wanted & FACES:  # f
-            at, result[TRIANGLES], fault = _parse_face(
-                buffer, at + 1, end, counts, triangles, triangle_uvs, result[TRIANGLES], corner
+            filled, polygons = result[TRIANGLES], result[POLYGONS]
+            at, result[TRIANGLES], result[POLYGONS], fault = _parse_face(
+                buffer, at + 1, end, counts, triangles, triangle_uvs, sizes, filled, polygons, corner
             )
         elif wanted & MATERIALS and ((c == 117 and c1 == 115 and c2 == 101) or (c == 109 and c1 == 116)):
-            fault = MATERIAL_LINE  # use(mtl), mt(llib)
+            fault = STATEMENT  # use(mtl), mt(llib)
+        elif wanted & TAGS and c == 116 and _is_blank(c1):  # t
+            fault = STATEMENT
         if fault:
             result[FAULT] = fault
             result[FAULT_AT] = line

@@ -11,7 +11,8 @@ from foveal.base.jit import kernel
 SCALAR, SKIPPED, POLYGON, STRIPS = 0, 1, 2, 3
 # What `walk_rows` remembers between calls.
 ROW, FIELD, LEFT, SEEN, FIRST, BEFORE, LAST, SMALL, FAULT, USED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-STATE_SIZE = 10
+POLYGONS = 10  # of the last call
+STATE_SIZE = 11
 # Faults: a list's count, or an index, that is no such thing.
 BAD_COUNT, BAD_INDEX = 1, 2
 SIZES = np.array([1, 1, 2, 2, 4, 4, 4, 8, 8, 8])
@@ -76,16 +77,18 @@ def decode_rows(buffer, end, kinds, types, count_types, is_big, rows, state, val
 
 
 @kernel
-def walk_rows(values, kinds, rows, state, scalars, faces):
+def walk_rows(values, kinds, rows, state, scalars, faces, sizes):
     """Follow rows with lists: scalars into `scalars[row]`, triangles into `faces`; how many triangles.
 
-    Polygons are fans around their first corner. In strips -1 begins anew and every second triangle is
-    turned over. Any number of values may come at a time; `state` remembers where the walk is.
+    Polygons are fans around their first corner, and `sizes` has their corners. In strips -1 begins anew
+    and every second triangle is turned over. Any number of values may come at a time; `state` remembers
+    where the walk is.
     """
     row, field, left, seen = state[ROW], state[FIELD], state[LEFT], state[SEEN]
     first, before, last = state[FIRST], state[BEFORE], state[LAST]
     begin = row
     count = 0
+    polygons = 0
     used = 0
     while row < rows and used < len(values):
         value = values[used]
@@ -99,6 +102,9 @@ def walk_rows(values, kinds, rows, state, scalars, faces):
                 break
             left = np.int64(value)
             seen = 0
+            if kind == POLYGON and left >= 3:
+                sizes[polygons] = left
+                polygons += 1
             state[SMALL] += 1 if kind == POLYGON and left < 3 else 0
         else:
             left -= 1
@@ -118,6 +124,9 @@ def walk_rows(values, kinds, rows, state, scalars, faces):
                         faces[count, 1] = before if is_turned else last
                         faces[count, 2] = corner
                         count += 1
+                        if kind == STRIPS:
+                            sizes[polygons] = 3
+                            polygons += 1
                     before = last
                     last = corner
                     seen += 1
@@ -129,4 +138,5 @@ def walk_rows(values, kinds, rows, state, scalars, faces):
                 row += 1
     state[ROW], state[FIELD], state[LEFT], state[SEEN] = row, field, left, seen
     state[FIRST], state[BEFORE], state[LAST], state[USED] = first, before, last, used
+    state[POLYGONS] = polygons
     return count

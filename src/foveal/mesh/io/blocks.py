@@ -37,9 +37,13 @@ class FaceBlock:
     ----------
     faces : (k, 3) int64
         Vertex indices that count from 0 over the whole file; they may be of vertices still to come.
+    sizes : (p,) int64 or None
+        Corners of each polygon that begins in this block: one of s corners is the next s - 2 triangles, a
+        fan around its first corner, which may go on in later blocks. None where all are triangles.
     """
 
     faces: NDArray[np.int64]
+    sizes: NDArray[np.int64] | None = None
 
 
 Block = VertexBlock | FaceBlock

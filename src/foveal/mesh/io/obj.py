@@ -26,7 +26,8 @@ __all__ = ["ObjSource"]
 
 
 class ObjSource(MeshSource):
-    """An OBJ file; see `MeshSource`. Polygons become fans; lines, curves and crease tags are passed by."""
+    """An OBJ file; see `MeshSource`. Polygons become fans; lines, curves and crease tags are passed by
+    (`read_polygons` keeps the tags)."""
 
     def __init__(self, path: Path, *, up: str = "y") -> None:
         with ByteStream(path) as stream:
@@ -82,7 +83,7 @@ class ObjSource(MeshSource):
                     )
                     begin += count
                 if len(rows.triangles):
-                    yield FaceBlock(rows.triangles.copy())
+                    yield FaceBlock(rows.triangles.copy(), rows.sizes.copy())
         self.bytes_read = self.size_hint
 
     def _colours(self, rows: NDArray[np.float64], begin: int) -> NDArray[np.uint8]:

@@ -34,8 +34,10 @@ class ObjRows:
     uvs, normals : (b, 2) float64, (c, 3) float64
     triangles, triangle_uvs : (d, 3) int64
         From 0; -1 for a corner without texture coordinates.
+    sizes : (e,) int64
+        Corners of the polygons that the triangles are fans of.
     statement : list of str
-        The words of a `usemtl` or `mtllib` line that comes after these, or none.
+        The first word and the rest of a `usemtl`, `mtllib` or `t` line that comes after these, or none.
     """
 
     points: NDArray[np.float64]
@@ -43,6 +45,7 @@ class ObjRows:
     normals: NDArray[np.float64]
     triangles: NDArray[np.int64]
     triangle_uvs: NDArray[np.int64]
+    sizes: NDArray[np.int64]
     statement: list[str]
 
 
@@ -66,13 +69,13 @@ class ObjParser:
         most = len(buffer) // 2 + 1  # a number, or a corner, and a blank
         rows = [np.empty((most // k + 1, w)) for k, w in ((4, 6), (2, 2), (4, 3))]
         triangles, uvs = (np.empty((most, 3), dtype=np.int64) for _ in range(2))
+        sizes = np.empty(most, dtype=np.int64)
         slow = np.empty((most, kernels.SLOW_COLUMNS), dtype=np.int64)
         result = np.zeros(kernels.RESULT_SIZE, dtype=np.int64)
         at = 0
         while at < len(buffer):
-            at = kernels.parse_lines(
-                buffer, at, self._wanted, self.counts, rows[0], rows[1], rows[2], triangles, uvs, slow, result
-            )
+            arrays = (*rows, triangles, uvs, sizes, slow, result)
+            at = kernels.parse_lines(buffer, at, self._wanted, self.counts, *arrays)
             fault = int(result[kernels.FAULT])
             if fault in _FAULTS:
                 raise FovealError(
@@ -83,7 +86,7 @@ class ObjParser:
             for table, values in enumerate(rows):
                 settle(buffer, doubts[doubts[:, 3] == table, :3], values.reshape(-1), self._path.name)
             words: list[str] = []
-            if fault == kernels.MATERIAL_LINE:
+            if fault == kernels.STATEMENT:
                 stop = lines.data.find(b"\n", at)
                 stop = len(buffer) if stop < 0 else stop
                 words = lines.data[at:stop].decode("utf-8", "replace").strip().split(maxsplit=1)
@@ -91,4 +94,5 @@ class ObjParser:
             filled = [int(result[k]) for k in (kernels.POINT_ROWS, kernels.UV_ROWS, kernels.NORMAL_ROWS)]
             points, coordinates, normals = (r[:n] for r, n in zip(rows, filled, strict=True))
             count = int(result[kernels.TRIANGLES])
-            yield ObjRows(points, coordinates, normals, triangles[:count], uvs[:count], words)
+            polygons = sizes[: result[kernels.POLYGONS]]
+            yield ObjRows(points, coordinates, normals, triangles[:count], uvs[:count], polygons, words)

@@ -18,8 +18,8 @@ __all__ = ["read_off"]
 _WORD = re.compile(rb"(?:ST)?(C?)(N?)(4?)(n?)OFF")
 
 
-def read_off(path: Path, /) -> tuple[TriMesh, list[str]]:
-    """Read OFF, COFF, NOFF and CNOFF: the mesh and notes about it. Polygons become fans.
+def read_off(path: Path, /) -> tuple[TriMesh, NDArray[np.int64], list[str]]:
+    """Read OFF, COFF, NOFF and CNOFF: the mesh, its polygons as fans, `FaceBlock.sizes` of them, and notes.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read_off(path: Path, /) -> tuple[TriMesh, list[str]]:
 
 def _mesh(
     name: str, points: list[list[bytes]], polygons: list[list[bytes]], word: "re.Match[bytes]"
-) -> tuple[TriMesh, list[str]]:
+) -> tuple[TriMesh, NDArray[np.int64], list[str]]:
     if not points:
         raise FovealError(f"{name}: there is no vertex in it. Choose a file with a triangle mesh.")
     width = min(map(len, points))
@@ -64,13 +64,14 @@ def _mesh(
         given = table[:, after : after + 3]
         is_wide = bool((given > 1).any()) or all(b"." not in v for v in points[0][after : after + 3])
         colours = bytes_of_colours(given, 1.0 if is_wide else 255.0)
-    triangles, small = _fans(name, polygons)
+    triangles, sizes = _fans(name, polygons)
+    small = len(polygons) - len(sizes)
     notes = [f"{small} faces of fewer than three corners were left out"] if small else []
     if not len(triangles):
         raise FovealError(
             f"{name}: it holds {len(points)} points and no triangle. Make a surface of the points first."
         )
-    return TriMesh.of(table[:, :3], triangles, normals=normals, colours=colours, name=name), notes
+    return TriMesh.of(table[:, :3], triangles, normals=normals, colours=colours, name=name), sizes, notes
 
 
 def _table(name: str, points: list[list[bytes]], width: int) -> NDArray[np.float64]:
@@ -84,8 +85,8 @@ def _table(name: str, points: list[list[bytes]], width: int) -> NDArray[np.float
         ) from None
 
 
-def _fans(name: str, polygons: list[list[bytes]]) -> tuple[NDArray[np.int64], int]:
-    fans, small = [], 0
+def _fans(name: str, polygons: list[list[bytes]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    fans, sizes = [], []
     for number, row in enumerate(polygons):
         try:
             count = int(row[0])
@@ -96,6 +97,6 @@ def _fans(name: str, polygons: list[list[bytes]]) -> tuple[NDArray[np.int64], in
             raise FovealError(
                 f"{name}: face {number} cannot be read. The file is damaged; copy it again."
             ) from None
-        small += count < 3
+        sizes += [count] if count >= 3 else []
         fans += [(corners[0], corners[i], corners[i + 1]) for i in range(1, count - 1)]
-    return np.array(fans, dtype=np.int64).reshape(-1, 3), small
+    return np.array(fans, dtype=np.int64).reshape(-1, 3), np.array(sizes, dtype=np.int64)

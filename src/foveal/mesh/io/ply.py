@@ -23,7 +23,8 @@ _POSITION = ("x", "y", "z")
 _NORMAL = ("nx", "ny", "nz")
 _COLOURS = (("red", "green", "blue"), ("diffuse_red", "diffuse_green", "diffuse_blue"), ("r", "g", "b"))
 
-Rows = tuple[NDArray[np.float64], NDArray[np.int64]]
+Rows = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]
+"""Scalars, triangles, and the corners of the polygons they come from: see `FaceBlock.sizes`."""
 
 
 class PlySource(MeshSource):
@@ -58,12 +59,12 @@ class PlySource(MeshSource):
                 if not element.properties:
                     continue
                 rows = body.rows(element) if body else _binary_rows(stream, self.name, header, element)
-                for scalars, faces in rows:
+                for scalars, faces, sizes in rows:
                     self.bytes_read = stream.bytes_read
                     if element.name == "vertex" and len(scalars):
                         yield self._vertex_block(element, scalars)
-                    if len(faces):
-                        yield FaceBlock(faces)
+                    if len(faces) or len(sizes):
+                        yield FaceBlock(faces, sizes)
             self.bytes_read = self.size_hint
             note = f"{header.small} faces of fewer than three corners were left out"
             if header.small and note not in self.notes:
@@ -119,8 +120,9 @@ class _Walk:
         fields, begin = len(self.kinds), int(self.state[kernels.ROW])
         scalars = np.zeros((len(values) // fields + 2, fields))
         faces = np.empty((len(values), 3), dtype=np.int64)
+        sizes = np.empty(len(values), dtype=np.int64)
         scalars[0] = self.begun
-        count = kernels.walk_rows(values, self.kinds, self.element.count, self.state, scalars, faces)
+        count = kernels.walk_rows(values, self.kinds, self.element.count, self.state, scalars, faces, sizes)
         row, fault = int(self.state[kernels.ROW]), int(self.state[kernels.FAULT])
         if fault:
             what = "a list whose length" if fault == kernels.BAD_COUNT else "an index that"
@@ -129,7 +131,8 @@ class _Walk:
                 " copy it again."
             )
         self.begun = scalars[row - begin].copy()
-        return (scalars[: row - begin], faces[:count].copy()), int(self.state[kernels.USED])
+        sizes = sizes[: self.state[kernels.POLYGONS]].copy()
+        return (scalars[: row - begin], faces[:count].copy(), sizes), int(self.state[kernels.USED])
 
 
 def _truncated(name: str, element: Element, rows: int) -> FovealError:
@@ -139,6 +142,7 @@ def _truncated(name: str, element: Element, rows: int) -> FovealError:
 
 
 _NO_FACES = np.empty((0, 3), dtype=np.int64)
+_NO_SIZES = np.empty(0, dtype=np.int64)
 
 
 class _AsciiBody:
@@ -168,7 +172,7 @@ class _AsciiBody:
             count = min(element.count - done, len(values) // fields)
             self._rest = values[count * fields :].copy()
             done += count
-            yield values[: count * fields].reshape(-1, fields), _NO_FACES
+            yield values[: count * fields].reshape(-1, fields), _NO_FACES, _NO_SIZES
 
     def _rows_with_lists(self, element: Element) -> Iterator[Rows]:
         walk = _Walk(element, self._name)
@@ -196,7 +200,7 @@ def _binary_rows(stream: ByteStream, name: str, header: PlyHeader, element: Elem
             assert layout.names is not None
             with np.errstate(invalid="ignore"):  # NaN of any kind is refused later, in a sentence
                 columns = [table[n].astype(np.float64) for n in layout.names]
-            yield np.stack(columns, axis=1), _NO_FACES
+            yield np.stack(columns, axis=1), _NO_FACES, _NO_SIZES
         done += whole
         if whole < count:
             raise _truncated(name, element, done)

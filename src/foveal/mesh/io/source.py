@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 
@@ -48,8 +49,12 @@ def open_source(path: str | os.PathLike[str], /, *, up: str | None = None) -> Me
         return StlSource(path, up=up)
     if kind == "obj":
         return ObjSource(path, up=up)
-    mesh, notes = read_off(path) if kind == "off" else read_other(path, kind)
-    source = source_from_mesh(mesh, name=path.name, up=up)
+    sizes = None
+    if kind == "off":
+        mesh, sizes, notes = read_off(path)
+    else:
+        mesh, notes = read_other(path, kind)
+    source = _in_memory(mesh, path.name, up, sizes)
     source.notes += notes
     return source
 
@@ -86,6 +91,7 @@ _ROWS = 1 << 17  # of a block
 @dataclass
 class _MeshInMemory(MeshSource):
     mesh: TriMesh = field(kw_only=True)
+    sizes: NDArray[np.int64] | None = field(kw_only=True, default=None)
 
     def blocks(self) -> Blocks:
         mesh = self.mesh
@@ -99,7 +105,7 @@ class _MeshInMemory(MeshSource):
         for begin in range(0, len(mesh.faces), _ROWS):
             faces = mesh.faces[begin : begin + _ROWS].astype(np.int64)
             self.bytes_read = self.size_hint * (begin + len(faces)) // len(mesh.faces)
-            yield FaceBlock(faces)
+            yield FaceBlock(faces, self.sizes if self.sizes is None or begin == 0 else self.sizes[:0])
 
 
 def source_from_mesh(mesh: TriMesh, /, *, name: str = "mesh", up: str = "y") -> MeshSource:
@@ -115,6 +121,10 @@ def source_from_mesh(mesh: TriMesh, /, *, name: str = "mesh", up: str = "y") -> 
         raise FovealError(f"{name}: there is no triangle in it.")
     if up not in ("x", "y", "z"):
         raise ValueError(f'up must be "x", "y" or "z", got {up!r}')
+    return _in_memory(mesh, name, up)
+
+
+def _in_memory(mesh: TriMesh, name: str, up: str, sizes: NDArray[np.int64] | None = None) -> _MeshInMemory:
     return _MeshInMemory(
         name=name,
         up=up,
@@ -122,4 +132,5 @@ def source_from_mesh(mesh: TriMesh, /, *, name: str = "mesh", up: str = "y") -> 
         has_colours=mesh.colours is not None,
         size_hint=mesh.positions.nbytes + mesh.faces.nbytes,
         mesh=mesh,
+        sizes=sizes,
     )
