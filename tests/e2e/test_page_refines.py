@@ -1,5 +1,7 @@
 """A published control mesh is refined where the page looks, by the page: static files, no server of ours."""
 
+import shutil
+
 import pytest
 
 from e2e.page import idle, picture, stats
@@ -12,11 +14,12 @@ from foveal.scene.cage_file import write_cage
 from foveal.scene.publish import publish
 from foveal.scene.refinement import Refinement
 from foveal.scene.scene import Layer
+from refine.test_sharp import cube
 
 
-def published(folder, viewer, refinement):
-    """The files of a site with a ball of 320 triangles."""
-    write_cage(bumpy_sphere(2), folder / "ball.fov", refinement=refinement)
+def published(folder, viewer, refinement, *, mesh=None, sharp_edges=None):
+    """The files of a site with a ball of 320 triangles, or another mesh."""
+    write_cage(mesh or bumpy_sphere(2), folder / "ball.fov", refinement=refinement, sharp_edges=sharp_edges)
     scene = Scene("A ball from few triangles", (Layer("ball", folder / "ball.fov", refinement=refinement),))
     site = publish(scene, folder / "site", viewer=viewer)
     return {p.relative_to(site).as_posix(): p for p in site.rglob("*") if p.is_file()}
@@ -50,6 +53,23 @@ def test_the_page_makes_the_mesh_that_its_camera_asks_for(open_page):
         shown = go(page, camera)
         assert_as_asked(shown, refined, camera)
     assert sockets == []
+
+
+def test_sharp_edges_stay_sharp_in_the_page(open_page, site, tmp_path, viewer_folder):
+    mesh, sharp = cube()
+    refinement = Refinement("sqrt3", CRITERIA)
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    camera = {**FRONT, "position": [3, 2.2, 4], "target": (0.5 * (low + high)).tolist()}
+    covered = {}
+    for angle in (1.0, None):
+        site.files.update(published(tmp_path, viewer_folder, refinement, mesh=mesh, sharp_edges=angle))
+        page = open_page(PLAIN + "&b=black")
+        shown = go(page, camera)
+        assert_as_asked(shown, Sqrt3(mesh, sharp=None if angle is None else sharp), camera)
+        covered[angle] = (picture(page).max(axis=2) > 20).sum()
+        shutil.rmtree(tmp_path / "site")
+    # as a whole cube the picture is convex and of six sides; without its corners it is rounder, and smaller
+    assert covered[1.0] > 1.2 * covered[None]
 
 
 def test_what_is_shown_has_no_hole(open_page):

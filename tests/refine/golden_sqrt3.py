@@ -1,4 +1,5 @@
-"""Writes `spec/golden/sqrt3.json`, which pytest and vitest both read: √3 refinements of small control meshes.
+"""Writes `spec/golden/sqrt3.json` and `sharp.json`, which pytest and vitest both read: √3 refinements of
+small control meshes, without and with sharp edges.
 
     PYTHONPATH=tests python -m refine.golden_sqrt3
 
@@ -23,6 +24,8 @@ from foveal.refine.pace import COARSEST, Pace, coarser
 from foveal.view.camera import Camera
 
 PATH = Path(__file__).parents[2] / "spec" / "golden" / "sqrt3.json"
+
+SHARP_PATH = PATH.with_name("sharp.json")
 
 LIMITS = 9  #: front, silhouette, back; the page leaves nothing out by a depth buffer
 
@@ -138,10 +141,10 @@ def _camera_json(camera):
     }
 
 
-def _walk(number, name, mesh):
+def _walk(number, name, mesh, sharp=None):
     rng = np.random.default_rng(number)
     steps = []
-    refined = Sqrt3(mesh)
+    refined = Sqrt3(mesh, sharp=sharp)
     for i, camera in enumerate(_cameras(mesh, rng)):
         chosen = ORDERS[number % 2][i]
         slices = int(rng.choice([7, 60])) if i % 3 == 1 else None
@@ -199,6 +202,24 @@ def _searches():
         yield {"edge_px": edge, "views": told}
 
 
+def golden_sharp():
+    """What the file of sharp edges holds."""
+    from refine.test_sharp import CREASED, PILLOWS
+
+    cages = {name: make() for name, make in {**CREASED, **PILLOWS}.items()}
+    return {
+        "cages": {
+            name: {
+                "positions": mesh.positions.reshape(-1).tolist(),
+                "faces": mesh.faces.reshape(-1).tolist(),
+                "sharp": np.asarray(sharp).reshape(-1).tolist(),
+            }
+            for name, (mesh, sharp) in cages.items()
+        },
+        "walks": [_walk(i, name, *cage) for i, (name, cage) in enumerate(cages.items())],
+    }
+
+
 def golden():
     """What the file holds."""
     cages = {name: make() for name, make in CAGES.items()}
@@ -229,8 +250,8 @@ def golden():
 
 
 if __name__ == "__main__":
-    made = golden()
-    was = json.loads(PATH.read_text()) if PATH.exists() else {"walks": []}
-    for walk in made["walks"]:
-        print(walk["cage"], "as it was" if walk in was["walks"] else "differs")
-    PATH.write_text(json.dumps(made, separators=(",", ":")) + "\n")
+    for path, made in ((PATH, golden()), (SHARP_PATH, golden_sharp())):
+        was = json.loads(path.read_text()) if path.exists() else {"walks": []}
+        for walk in made["walks"]:
+            print(walk["cage"], "as it was" if walk in was["walks"] else "differs")
+        path.write_text(json.dumps(made, separators=(",", ":")) + "\n")

@@ -52,13 +52,17 @@ class Hierarchy:
         self.key[v] = (face, int(w[0] * 2**20), int(w[1] * 2**20))
 
     def wanted(self, is_long):
-        """The edges that are split for themselves: those that `is_long(level, a, b)` and one maker of is."""
+        """The edges that are split for themselves: what `is_long(level, a, b)` of those that are asked."""
         found = set()
         for level, apexes in enumerate(self.apexes[:-1]):
-            for a, b in apexes:
-                makers = {v for v in (a, b) if level > 0 and self.born[v] == level}
-                if (not makers or makers & found) and is_long(level, a, b):
-                    found.add(frozenset((a, b)))
+            halves, inner = {}, {}
+            for edge in map(frozenset, apexes):
+                makers = {v for v in edge if level > 0 and self.born[v] == level}
+                (inner if len(makers) == 2 else halves)[edge] = makers
+            new = {e for e, makers in halves.items() if makers <= found and is_long(level, *e)}
+            taken = {v for e in new for v in self.required(e)} | found
+            new |= {e for e, m in inner.items() if m & found and m <= taken and is_long(level, *e)}
+            found |= new
         return found
 
     def required(self, edge):

@@ -1,4 +1,4 @@
-"""√3 refinements of small control meshes: the triangles of spec/golden/sqrt3.json, as in the viewer."""
+"""√3 refinements of small control meshes: the triangles of spec/golden/, as in the viewer."""
 
 import json
 import math
@@ -14,11 +14,12 @@ from foveal.view.camera import Camera
 from refine import golden_sqrt3 as golden
 
 GOLDEN = json.loads(golden.PATH.read_text())
+SHARP = json.loads(golden.SHARP_PATH.read_text())
 
 
-def mesh_of(name):
-    data = GOLDEN["cages"][name]
-    return TriMesh.of(np.reshape(data["positions"], (-1, 3)), np.reshape(data["faces"], (-1, 3)))
+def refinement_of(data):
+    mesh = TriMesh.of(np.reshape(data["positions"], (-1, 3)), np.reshape(data["faces"], (-1, 3)))
+    return Sqrt3(mesh, sharp=np.reshape(data["sharp"], (-1, 2)) if "sharp" in data else None)
 
 
 def camera_of(data):
@@ -45,14 +46,16 @@ class Seen:
         return self.planes.reshape(5, 4)
 
 
-@pytest.mark.parametrize("walk", GOLDEN["walks"], ids=lambda walk: walk["cage"])
-def test_a_walk_gives_the_golden_triangles_bit_for_bit(walk):
-    mesh = mesh_of(walk["cage"])
-    walking = Sqrt3(mesh)
+WALKS = [(file["cages"][walk["cage"]], walk) for file in (GOLDEN, SHARP) for walk in file["walks"]]
+
+
+@pytest.mark.parametrize(("cage", "walk"), WALKS, ids=[walk["cage"] for _, walk in WALKS])
+def test_a_walk_gives_the_golden_triangles_bit_for_bit(cage, walk):
+    walking = refinement_of(cage)
     for step in walk["steps"]:
         seen, criteria = Seen(step["view"]), golden.CRITERIA[step["criteria"]]
         np.testing.assert_allclose(view_of(camera_of(step["camera"])), step["view"], rtol=1e-12, atol=1e-12)
-        fresh = Sqrt3(mesh)
+        fresh = refinement_of(cage)
         fresh.update(seen, criteria=criteria)
         for refined in (fresh, walking):
             done = golden.refined_to(refined, seen, criteria, step["slices"])

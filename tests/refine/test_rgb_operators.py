@@ -43,7 +43,7 @@ class Walk:
         return self.names[(-1, key - BASE_KEY, 0) if key < 0 else (key >> 42, (key >> 21) & MASK, key & MASK)]
 
     def slots(self):
-        used = self.net.flags[: self.net.counts[1]] & PRESENT != 0
+        used = self.net.vertices["flags"][: self.net.counts[1]] & PRESENT != 0
         return {self.name(v): int(v) for v in np.nonzero(used)[0]}
 
     def step(self, chance=0.6):

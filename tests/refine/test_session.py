@@ -13,6 +13,7 @@ from foveal.refine.pace import coarser
 from foveal.refine.scheme import refiner
 from foveal.refine.session import MOST_TRIANGLES, Session, origin_of
 from foveal.refine.wire import request_of
+from refine.test_sharp import across, cube
 from refine.wire_page import Page, wish
 
 BALL = bumpy_sphere(2)
@@ -45,10 +46,10 @@ def shown(page):
     return {min(c[k:].tobytes() + c[:k].tobytes() for k in range(3)) for c in corners}
 
 
-def fresh(mesh, step=0, positions="control", scheme="sqrt3", **what):
+def fresh(mesh, step=0, positions="control", scheme="sqrt3", sharp=None, **what):
     """The same by a refinement that never saw anything else."""
     request = request_of(json.dumps(wish(**what)))
-    refined = refiner(mesh, scheme=scheme)
+    refined = refiner(mesh, scheme=scheme, sharp=sharp)
     refined.update(request.camera, criteria=coarser(request.criteria, step))
     found = refined.mesh(positions=positions)
     points = np.float32(found.positions - origin_of(mesh))
@@ -161,6 +162,18 @@ def test_what_was_not_sent_cannot_have_been_seen():
     session = Session(BALL)
     with pytest.raises(FovealError, match="not sent"):
         session.ask(request_of(json.dumps(wish(seen=1))))
+
+
+@pytest.mark.parametrize("make", [cube, across])
+def test_sharp_edges_are_in_a_session_too(make):
+    mesh, sharp = make()
+    session, page = Session(mesh, sharp=sharp), Page()
+    for angle in (0.0, 2.0, 0.3):
+        settle(session, page, angle=angle)
+    assert shown(page) == fresh(mesh, angle=0.3, sharp=sharp)
+    assert shown(page) != fresh(mesh, angle=0.3)
+    with pytest.raises(FovealError, match=r"^cube\.fov: it has sharp edges, which loop does not know"):
+        Session(mesh, scheme="loop", sharp=sharp, name="cube.fov")
 
 
 def test_what_is_no_surface_is_refused():

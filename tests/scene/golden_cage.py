@@ -1,4 +1,4 @@
-"""Writes `spec/golden/cage.fov` and `cage.json`, which pytest and vitest both read.
+"""Writes `cage.fov`, `cage.json`, and `cage_sharp` the same, in `spec/golden`: pytest and vitest read them.
 
 PYTHONPATH=tests python -m scene.golden_cage
 """
@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 
 from foveal.mesh.trimesh import TriMesh
-from foveal.refine import Criteria, Region
+from foveal.refine import Criteria, Region, sharp_edges
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import Refinement
 
@@ -32,8 +32,22 @@ REFINEMENT = Refinement(
 )
 
 
+SHARP = Refinement("sqrt3", Criteria())
+ANGLE = 1.5
+"""Two of the pyramid's four inner edges bend by more."""
+
+
+def write_sharp() -> None:
+    """A file with sharp edges."""
+    write_cage(MESH, FOLDER / "cage_sharp.fov", refinement=SHARP, sharp_edges=ANGLE)
+    edges = sharp_edges(MESH, ANGLE)
+    data = {"positions": MESH.positions.tolist(), "faces": MESH.faces.tolist(), "sharp": edges.tolist()}
+    (FOLDER / "cage_sharp.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
+
+
 def main() -> None:
-    """Write both."""
+    """Write all."""
+    write_sharp()
     write_cage(MESH, FOLDER / "cage.fov", refinement=REFINEMENT, up="z")
     regions = {
         name: {"iterations": region.iterations, "edge_px": region.edge_px, "bend": region.bend}

@@ -14,7 +14,7 @@ import corpus
 from foveal import FovealError, TriMesh
 from foveal.container import create, open_container
 from foveal.mesh.shapes import bumpy_sphere, icosphere, tetrahedron
-from foveal.refine import Criteria, Region
+from foveal.refine import Criteria, Region, sharp_edges
 from foveal.scene.cage_file import control_mesh, is_cage, read_cage, write_cage
 from foveal.scene.refinement import Refinement, chosen, refinement_json, refinement_of
 from scene import golden_cage
@@ -94,6 +94,46 @@ def test_the_golden_file_is_read_and_written(tmp_path):
         }
 
 
+def test_the_golden_file_with_sharp_edges_is_read_and_written(tmp_path):
+    path = golden_cage.FOLDER / "cage_sharp.fov"
+    expected = json.loads((golden_cage.FOLDER / "cage_sharp.json").read_text())
+    found = read_cage(path)
+    assert found.mesh.positions.tolist() == expected["positions"]
+    assert found.mesh.faces.tolist() == expected["faces"]
+    assert found.sharp.tolist() == expected["sharp"]
+    assert 0 < len(found.sharp) < 4
+    sharp = {"refinement": golden_cage.SHARP, "sharp_edges": golden_cage.ANGLE}
+    report = write_cage(golden_cage.MESH, tmp_path / "again.fov", **sharp)
+    assert report.sharp_edges == len(found.sharp)
+    with open_container(path) as old, open_container(tmp_path / "again.fov") as new:
+        assert old.chunk(0) == new.chunk(0)
+        assert old.header["sharp_edges"] == new.header["sharp_edges"]
+
+
+def test_without_sharp_edges_nothing_is_written_of_them(tmp_path):
+    for angle in (None, math.pi):
+        write_cage(tetrahedron(), tmp_path / "a.fov", refinement=PLAIN, sharp_edges=angle)
+        assert read_cage(tmp_path / "a.fov").sharp is None
+        with open_container(tmp_path / "a.fov") as file:
+            assert "sharp_edges" not in file.header
+
+
+def test_sharp_edges_are_those_of_the_welded_mesh(tmp_path):
+    mesh = tetrahedron()
+    soup = TriMesh(mesh.positions[mesh.faces].reshape(-1, 3), np.arange(12, dtype=np.int32).reshape(-1, 3))
+    write_cage(soup, tmp_path / "a.fov", refinement=PLAIN, sharp_edges=1.0)
+    found = read_cage(tmp_path / "a.fov")
+    assert found.sharp.tolist() == sharp_edges(found.mesh, 1.0).tolist()
+    assert len(found.sharp) == 6
+
+
+def test_too_many_sharp_edges_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("foveal.scene.cage_file._MOST_SHARP", 5)
+    with pytest.raises(FovealError, match=r"6 sharp edges, more than the 5 .* larger angle"):
+        write_cage(tetrahedron(), tmp_path / "a.fov", refinement=PLAIN, sharp_edges=1.0)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_soup_is_welded(tmp_path):
     ball = icosphere(1)
     soup = TriMesh(ball.positions[ball.faces].reshape(-1, 3), np.arange(240, dtype=np.int32).reshape(-1, 3))
@@ -162,6 +202,14 @@ def test_a_chunk_of_other_bytes_is_refused_or_read_safely(small, at, value):
         ({"box": [[0, 0, 0], [1, 1, float("inf")]]}, "box"),
         ({"up": "w"}, "up"),
         ({"up": ...}, "up"),
+        ({"sharp_edges": [0]}, "sharp_edges"),
+        ({"sharp_edges": [0, 4]}, "sharp_edges"),
+        ({"sharp_edges": [0, -1]}, "sharp_edges"),
+        ({"sharp_edges": [0, 1.0]}, "sharp_edges"),
+        ({"sharp_edges": [True, 2]}, "sharp_edges"),
+        ({"sharp_edges": [[0, 1]]}, "sharp_edges"),
+        ({"sharp_edges": "01"}, "sharp_edges"),
+        ({"sharp_edges": None}, "sharp_edges"),
         ({"scheme": ...}, "scheme"),
         ({"scheme": "catmull"}, "sqrt3, loop, butterfly"),
         ({"scheme": 3}, "scheme"),
@@ -214,6 +262,25 @@ def test_what_is_chosen_goes_before_what_is_there():
         chosen({"budget": 7})
     with pytest.raises(ValueError, match="scheme must be one of"):
         chosen({"scheme": "cubic"})
+
+
+def test_sharp_edges_are_chosen_with_sqrt3_alone():
+    assert chosen({"scheme": "sqrt3", "sharp_edges": 0.5}) == Refinement("sqrt3", Criteria())
+    with pytest.raises(FovealError, match="loop knows no sharp edges"):
+        chosen({"scheme": "loop", "sharp_edges": 0.5})
+    with pytest.raises(FovealError, match="choose a scheme"):
+        chosen({"sharp_edges": 0.5})
+    for angle in (-0.1, 4.0, math.nan):
+        with pytest.raises(ValueError, match="from 0 to pi"):
+            chosen({"scheme": "sqrt3", "sharp_edges": angle})
+
+
+def test_criteria_may_be_changed_in_part():
+    base = Refinement("sqrt3", Criteria(front=Region(1, 3.0, 0.5)))
+    found = base.chosen({"criteria": {"front": {"edge_px": 2.0}, "back": {"iterations": 1}}})
+    assert found.criteria == Criteria(front=Region(1, 2.0, 0.5), back=Region(1))
+    with pytest.raises(TypeError):
+        base.chosen({"criteria": {"front": {"edges": 2.0}}})
 
 
 def test_json_and_back():

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from foveal import Camera, FovealError, TriMesh
+from foveal.container import create, open_container
 from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere
-from foveal.refine import Criteria, Region
+from foveal.refine import Criteria, Region, Sqrt3, sharp_edges
 from foveal.scene import Layer, Scene, read_scene, scene_of, write_scene
 from foveal.scene.build import build
 from foveal.scene.cage_file import CageReport, is_cage, read_cage
@@ -18,8 +19,10 @@ from foveal.scene.info import info
 from foveal.scene.prepare import load, prepare
 from foveal.scene.publish import publish
 from foveal.scene.read import read
+from foveal.scene.refine import refine
 from foveal.scene.refinement import Refinement
 from foveal.scene.render import draw, frame, render
+from refine.test_sharp import cube
 
 BALL = bumpy_sphere(2)
 FINE = Criteria(Region(3, 2.0), Region(5, 1.0, 0.25 * np.pi), Region(1))
@@ -233,3 +236,84 @@ def test_layers_of_patches_say_nothing_of_refinement(fov, tmp_path):
 def test_a_camera_may_be_inside(cage):
     render(cage, camera=Camera.of([0, 0, 0], [0, 0, 1], up=[0, 1, 0], width=64, height=48))
     assert len(icosphere(0).faces) == 20
+
+
+@pytest.fixture
+def creased(tmp_path):
+    """A cube as a file, whose edges are sharp, and the mesh."""
+    mesh = cube()[0]
+    build(mesh, tmp_path / "cube.fov", scheme="sqrt3", sharp_edges=1.0, criteria=FINE)
+    return tmp_path / "cube.fov", mesh
+
+
+def test_sharp_edges_go_wherever_the_file_goes(creased, tmp_path):
+    path, mesh = creased
+    live = Sqrt3(mesh, sharp=sharp_edges(mesh, 1.0))
+    eye = Camera.of([3, 2, 4], [0.5, 0.5, 0.5], width=320, height=240)
+    live.update(eye, criteria=FINE)
+    found = refine(path, camera=eye)
+    assert (found.positions == live.mesh().positions).all()
+    smooth = refine(path, camera=eye, sharp_edges=np.pi)
+    assert (smooth.positions.max(axis=0) < 1 - 1e-3).any()
+    assert (refine(mesh, camera=eye, scheme="sqrt3", criteria=FINE).faces == smooth.faces).all()
+    assert (info(path)["sharp_edges"], check(path)["sharp_edges"]) == (12, 12)
+    assert info(path)["triangles"] == check(path)["triangles"] == 12
+    assert (draw(scene_of(path), eye) != render(mesh, camera=eye)).any()
+
+
+def test_sharp_edges_are_another_file_in_the_cache(tmp_path):
+    mesh = cube()[0]
+    kept = {prepare(mesh, scheme="sqrt3", sharp_edges=angle) for angle in (None, 1.0, 2.0, 1.0)}
+    assert len(kept) == 3
+    assert sorted(len(found) if (found := read_cage(path).sharp) is not None else 0 for path in kept) == [
+        0,
+        0,
+        12,
+    ]
+
+
+def test_sharp_edges_that_cannot_be_kept_are_said(creased, tmp_path):
+    path, mesh = creased
+    with pytest.raises(FovealError, match="sharp_edges would change nothing"):
+        load(path, sharp_edges=1.0)
+    with pytest.raises(FovealError, match=r"cube\.fov: it has sharp edges, which loop does not know"):
+        refine(path, scheme="loop")
+    with pytest.raises(FovealError, match="butterfly knows no sharp edges"):
+        build(mesh, tmp_path / "b.fov", scheme="butterfly", sharp_edges=1.0)
+    with pytest.raises(FovealError, match="choose a scheme"):
+        build(mesh, tmp_path / "b.fov", sharp_edges=1.0)
+    assert not (tmp_path / "b.fov").exists()
+    with pytest.raises(FovealError, match="sharp edges, which loop does not know"):
+        load(path, scheme="loop")
+
+
+def test_built_anew_what_is_not_chosen_stays(creased, cage, tmp_path):
+    path, mesh = creased
+    for source in (path, cage):
+        was = read_cage(source)
+        build(source, tmp_path / "b.fov", scheme="sqrt3", budget=77)
+        found = read_cage(tmp_path / "b.fov")
+        assert found.refinement == was.refinement.chosen({"budget": 77})
+        assert found.up == was.up
+        assert (found.sharp is None) == (was.sharp is None)
+    build(path, tmp_path / "b.fov", scheme="sqrt3")
+    assert (read_cage(tmp_path / "b.fov").sharp == sharp_edges(mesh, 1.0)).all()
+    build(path, tmp_path / "b.fov", scheme="sqrt3", sharp_edges=np.pi)
+    assert read_cage(tmp_path / "b.fov").sharp is None
+    build(path, tmp_path / "b.fov", scheme="loop")  # which knows none, and says so
+    assert read_cage(tmp_path / "b.fov").sharp is None
+
+
+def test_an_edge_that_is_none_is_said(creased):
+    path, _ = creased
+    data = path.read_bytes()
+    with open_container(path) as file:
+        header = {k: v for k, v in file.header.items() if k not in ("kind", "version")}
+        chunk = file.chunk(0)
+    assert 7 not in read_cage(path).mesh.faces[(read_cage(path).mesh.faces == 0).any(axis=1)]
+    with create(path, kind="cage", version=1) as writer:
+        writer.finish({**header, "sharp_edges": [0, 7]}, chunk)
+    assert path.read_bytes() != data
+    for verb in (check, refine):
+        with pytest.raises(FovealError, match="no edge between vertices 0 and 7"):
+            verb(path)

@@ -12,6 +12,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from foveal import FovealError
 from foveal.mesh.shapes import bumpy_sphere, icosphere
 from foveal.refine import Criteria, Sqrt3
 from foveal.refine.session import Session
@@ -359,3 +360,19 @@ def test_a_larger_mesh_over_sockets_is_what_it_is_without(tmp_path, viewer):
         session.ask(request_of(json.dumps(wish(edge_px=2, iterations=5, seen=alone.sequence))))
         alone.apply(session.answer())
     assert page.head["triangles"] == alone.head["triangles"] > 10_000
+
+
+def test_kernels_are_ready_before_it_serves(cages, viewer, monkeypatch):
+    warmed = []
+    monkeypatch.setattr("foveal.refine.session.warm", warmed.append)
+    with start(cages, port=0, viewer=viewer):
+        assert warmed == ["sqrt3"]
+
+
+def test_a_control_mesh_that_is_no_surface_is_refused_before_it_is_served(cages, viewer, monkeypatch):
+    def refuse(*_, **__):
+        raise FovealError("ball.fov: no surface.")
+
+    monkeypatch.setattr("foveal.refine.session.Session", refuse)
+    with pytest.raises(FovealError, match="no surface"):
+        start(cages, port=0, viewer=viewer)

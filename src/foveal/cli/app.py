@@ -19,6 +19,7 @@ from .build import build
 from .check import check
 from .export import export
 from .info import info
+from .interrupts import heed
 from .publish import publish
 from .refine import refine
 from .render import render
@@ -44,6 +45,7 @@ class _Group(TyperGroup):
         try:
             return super().main(args, *rest, **named)
         except Exception as error:
+            heed()  # a compiler that was interrupted may find fault with itself
             if "--debug" in words:
                 traceback.print_exc()
             print(plain(f"foveal: {_sentence(error)}"), file=sys.stderr)

@@ -56,6 +56,8 @@ def build(
     facts = {"file": str(output), **dataclasses.asdict(report)}
     if isinstance(report, CageReport):
         counts = f"{counted(report.triangles, 'triangle')}, {counted(report.vertices, 'vertex', 'vertices')}"
+        if report.sharp_edges:
+            counts += f", {counted(report.sharp_edges, 'sharp edge')}"
         telling.result(facts, f"{output}: a control mesh of {counts}, {report.bytes:,} bytes")
         return
     facts["seconds"] = {"total": seconds, **report.seconds}

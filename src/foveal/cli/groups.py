@@ -5,7 +5,7 @@ import inspect
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -27,6 +27,7 @@ from .options import (
     Positions,
     Quiet,
     Scheme,
+    SharpEdges,
     SilhouetteBend,
     SilhouetteEdgePx,
     SilhouetteIterations,
@@ -40,7 +41,6 @@ from .result import print_json, print_lines
 
 if TYPE_CHECKING:
     from foveal.base.tasks import Executor
-    from foveal.refine import Criteria
     from foveal.scene.build import BuildOptions
     from foveal.scene.refinement import RefineOptions
 
@@ -153,32 +153,28 @@ def refining(
     back_iterations: BackIterations = None,
     positions: Positions = None,
     budget: Budget = None,
+    sharp_edges: SharpEdges = None,
 ) -> "RefineOptions":
-    """How a control mesh is refined; what is not chosen is as in `Criteria`, once anything of it is."""
-    silhouette = (silhouette_iterations, silhouette_edge_px, silhouette_bend)
-    regions = {"front": (iterations, edge_px, bend), "silhouette": silhouette, "back": (back_iterations,)}
+    """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
+    silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
+    front = (iterations, edge_px, _radians(bend))
+    regions = {"front": front, "silhouette": silhouette, "back": (back_iterations,)}
     names = ("iterations", "edge_px", "bend")
-    given: dict[str, dict[str, Any]] = {k: dict(zip(names, v, strict=False)) for k, v in regions.items()}
-    has_criteria = any(value is not None for region in given.values() for value in region.values())
+    criteria = {
+        region: {name: value for name, value in zip(names, values, strict=False) if value is not None}
+        for region, values in regions.items()
+    }
     return {
         "scheme": scheme and scheme.value,
-        "criteria": _criteria(given) if has_criteria else None,
+        "criteria": criteria if any(criteria.values()) else None,
         "positions": positions and positions.value,
         "budget": budget,
+        "sharp_edges": _radians(sharp_edges),
     }
 
 
-def _criteria(given: dict[str, dict[str, Any]]) -> "Criteria":
-    """The default criteria with what was given, angles in degrees, in place of their own."""
-    from foveal.refine import Criteria
-
-    criteria = Criteria()
-    for name, values in given.items():
-        chosen = {key: value for key, value in values.items() if value is not None}
-        if "bend" in chosen:
-            chosen["bend"] = math.radians(chosen["bend"])
-        criteria = replace(criteria, **{name: replace(getattr(criteria, name), **chosen)})
-    return criteria
+def _radians(degrees: float | None) -> float | None:
+    return None if degrees is None else math.radians(degrees)
 
 
 @contextmanager

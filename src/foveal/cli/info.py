@@ -80,6 +80,8 @@ def _mesh(facts: dict[str, Any]) -> list[str]:
 
 def _cage(facts: dict[str, Any]) -> list[str]:
     lines = [*_common(facts), f"  scheme       {facts['scheme']}, {facts['positions']} positions"]
+    if facts["sharp_edges"]:
+        lines.append(f"  sharp edges  {facts['sharp_edges']:,}")
     for name, region in facts["criteria"].items():
         limits = f"{region['iterations']} iterations, edge {region['edge_px']:g} px"
         lines.append(f"  {name:<12} {limits}, bend {region['bend_degrees']:.4g} degrees")

@@ -1,9 +1,13 @@
 """What the `foveal` script calls: so little that Ctrl-C during its own imports is met with grace too."""
 
+import os
 import signal
 import sys
+import threading
 from io import TextIOWrapper
 from types import FrameType
+
+from . import interrupts
 
 __all__ = ["run"]
 
@@ -14,9 +18,19 @@ def run() -> None:
         number = getattr(signal, name, None)  # Windows has but one of them
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _end)
+    interrupts.listen()
     for stream in (sys.stdout, sys.stderr):  # a name that cannot be said is spelled, and never an error
         if isinstance(stream, TextIOWrapper):  # None where it is closed
             stream.reconfigure(errors="backslashreplace")
+    try:
+        _run()
+    except SystemExit as end:
+        if any(thread.name == "foveal-apart" for thread in threading.enumerate()):
+            _leave(end.code)
+        raise
+
+
+def _run() -> None:
     try:
         from .app import app
 
@@ -31,3 +45,13 @@ def run() -> None:
 
 def _end(number: int, frame: FrameType | None) -> None:
     sys.exit(128 + number)
+
+
+def _leave(code: object) -> None:
+    """End though a kernel, or the compiler, still runs for who was interrupted (see `scene/apart.py`).
+
+    It writes nothing; but LLVM is not to be taken down under a thread that compiles.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code if isinstance(code, int) else int(code is not None))

@@ -19,6 +19,7 @@ __all__ = [
     "Iterations",
     "Json",
     "Memory",
+    "ModeKind",
     "Normals",
     "NormalsKind",
     "Positions",
@@ -26,6 +27,7 @@ __all__ = [
     "Quiet",
     "Scheme",
     "SchemeKind",
+    "SharpEdges",
     "SilhouetteBend",
     "SilhouetteEdgePx",
     "SilhouetteIterations",
@@ -80,6 +82,13 @@ class SchemeKind(enum.StrEnum):
     sqrt3 = "sqrt3"
     loop = "loop"
     butterfly = "butterfly"
+
+
+class ModeKind(enum.StrEnum):
+    """How √3 refinement goes about it."""
+
+    exact = "exact"
+    filter = "filter"
 
 
 class PositionsKind(enum.StrEnum):
@@ -192,6 +201,15 @@ Budget = Annotated[
     int | None,
     typer.Option(
         min=0, max=2**32 - 1, metavar="N", help="Triangles at most, by a coarser threshold; 0 for no limit."
+    ),
+]
+SharpEdges = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0,
+        max=180.0,
+        metavar="DEGREES",
+        help="Keep edges sharp at which the control mesh bends by more than this. For sqrt3.",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace what is there already.")]

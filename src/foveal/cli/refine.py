@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .groups import Telling, refining, takes, telling
-from .options import Force, Source, Up
+from .options import Force, ModeKind, Source, Up
 from .output import refuse_output
 from .result import counted
 
@@ -37,6 +37,13 @@ def refine(
     visible_only: Annotated[
         bool, typer.Option("--visible-only", help="Leave alone what is behind the rest. For sqrt3.")
     ] = False,
+    mode: Annotated[
+        ModeKind,
+        typer.Option(
+            case_sensitive=False,
+            help="exact: at the points of uniform subdivision; filter: as the √3 paper has it, to compare.",
+        ),
+    ] = ModeKind.exact,
     up: Up = None,
     force: Force = False,
     *,
@@ -53,6 +60,9 @@ def refine(
     if everywhere and (camera is not None or visible_only):
         which = "--visible-only" if camera is None else "--camera"
         raise typer.BadParameter("--everywhere asks no camera. Leave one out.", param_hint=which)
+    if mode == ModeKind.filter and (everywhere or visible_only):
+        which = "--everywhere" if everywhere else "--visible-only"
+        raise typer.BadParameter("--mode filter does not know it. Leave one out.", param_hint=which)
     refuse_output(output, file, ".ply", ".glb", force=force)
     begin = time.monotonic()
     with telling.progress() as progress:
@@ -62,6 +72,7 @@ def refine(
             camera=camera,
             everywhere=everywhere,
             visible_only=visible_only,
+            mode=mode.value,
             up=up and up.value,
             progress=progress,
             **refining,

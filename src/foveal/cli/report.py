@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Self
 
 from foveal.base.progress import SILENT, Progress, Stage
 
+from .interrupts import heed
 from .result import plain
 
 if TYPE_CHECKING:
@@ -26,6 +27,10 @@ class Reporter:
         self.is_verbose = is_verbose
 
     def stage(self, what: str, total: float | None) -> Stage:
+        heed()
+        return self._stage(what, total)
+
+    def _stage(self, what: str, total: float | None) -> Stage:
         raise NotImplementedError
 
     def note(self, sentence: str) -> None:
@@ -41,10 +46,12 @@ class Reporter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+        if kind is None:
+            heed()
 
 
 class _Quiet(Reporter):
-    def stage(self, what: str, total: float | None) -> Stage:
+    def _stage(self, what: str, total: float | None) -> Stage:
         return SILENT.stage(what, total)
 
     def note(self, sentence: str) -> None:
@@ -54,7 +61,7 @@ class _Quiet(Reporter):
 class _Lines(Reporter):
     """A line at the start of each stage and every five seconds: for logs."""
 
-    def stage(self, what: str, total: float | None) -> Stage:
+    def _stage(self, what: str, total: float | None) -> Stage:
         return _LineStage(self, what, total)
 
 
@@ -114,7 +121,7 @@ class _Bars(Reporter):
             self._rich.start()
         return self._rich
 
-    def stage(self, what: str, total: float | None) -> Stage:
+    def _stage(self, what: str, total: float | None) -> Stage:
         live = self._live()
         return _BarStage(live, live.add_task(what, total=total), total)
 

@@ -120,8 +120,8 @@ def slot_of(net, key):
     vertex.stamp = counts[CLOCK]
     vertex.around = NONE
     vertex.shrink = 0.25
-    net.births[v] = level_at(key)
-    net.flags[v] = 0
+    net.vertices[v].birth = level_at(key)
+    net.vertices[v].flags = 0
     enter(net, key, v)
     return v
 
@@ -235,7 +235,7 @@ def side(net, v, way):
     change places. On the right of an edge of the control mesh it is the left in the triangle beyond.
     """
     face, w = place(net.vertices[v].key)
-    step = np.int64(SIDE) >> np.int64(net.births[v])
+    step = np.int64(SIDE) >> np.int64(net.vertices[v].birth)
     e = apex_corner(w, step)
     sign = np.int64(1)
     if way == RIGHT:

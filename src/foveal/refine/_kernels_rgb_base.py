@@ -30,7 +30,7 @@ def base_vertices(net, positions, starts, ring, is_border):
         vertex = net.vertices[v]
         begin, end = starts[v], starts[v + 1]
         n = end - begin
-        net.births[v], net.flags[v] = 0, BORN | LIMIT | PRESENT
+        net.vertices[v].birth, net.vertices[v].flags = 0, BORN | LIMIT | PRESENT
         vertex.key = v + BASE_KEY
         vertex.shrink = 0.25
         turn_cos = turn(1, n)[0] if n > 1 else 1.0
@@ -92,5 +92,5 @@ def area(net, f):
 def fill_table(net):
     """Enter all vertices but the control mesh's into an empty table."""
     for v in range(net.counts[BASE_COUNT], net.counts[VERTICES]):
-        if net.births[v] != FREE:
+        if net.vertices[v].birth != FREE:
             enter(net, net.vertices[v].key, np.int64(v))

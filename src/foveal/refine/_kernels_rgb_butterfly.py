@@ -97,7 +97,7 @@ def along(net, v, is_first):
 @lean
 def butterfly_needs(net, top, v):
     """Push what is still unknown of the stencil of v."""
-    level = np.int64(net.births[v]) - 1
+    level = np.int64(net.vertices[v].birth) - 1
     top = push_unknown(net, top, part(net, v, LEFT, 0), level)
     if side(net, v, RIGHT)[0] == NONE:
         for is_first in (True, False):
@@ -165,7 +165,7 @@ def butterfly_at(net, v, axis):
         )
         return 0.5625 * (p + q) - 0.0625 * (before + after)
     q = net.vertices[part(net, v, RIGHT, 0)].born[axis]
-    step = SIDE >> (np.int64(net.births[v]) - 1)
+    step = SIDE >> (np.int64(net.vertices[v].birth) - 1)
     face, k, n = extraordinary(net, v, LEFT)
     other, i, m = extraordinary(net, v, RIGHT)
     if n != 6 and m != 6:
@@ -188,4 +188,4 @@ def butterfly_born(net, v):
     set_born(net, v, x, y, z)
     vertex = net.vertices[v]
     vertex.limit[0], vertex.limit[1], vertex.limit[2] = x, y, z
-    net.flags[v] |= LIMIT
+    net.vertices[v].flags |= LIMIT

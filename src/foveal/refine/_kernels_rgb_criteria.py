@@ -9,8 +9,6 @@ surface bent as much again.
 
 import math
 
-import numpy as np
-
 from foveal.base.jit import lean
 
 from ._kernels_criteria import (
@@ -31,36 +29,33 @@ from ._kernels_rgb_points import ensure_at, position
 
 
 @lean
-def has_wanted_maker(net, a, b, level):
-    """Whether a split that makes the edge a, b of a level is wanted, or it takes none.
+def is_asked(net, a, b, level):
+    """Whether it matters if the edge a, b of a level meets the criteria, by the splits that make it.
 
-    A half edge is made by the split of the edge it is half of; an inner edge by those of the two whose
-    middles it joins. One will do: beside long thin triangles the other is often too short to be wanted for
-    itself. Were both asked for, one in eight triangles seen of a machine's part kept too long an edge.
+    Those of the control mesh always matter; a half of a split edge if that is wanted; an inner edge, which
+    joins the middles of two, if one of these is wanted, and the other wanted or taken by a half that is.
+    Were both to be wanted, one in eight triangles seen of a machine's part kept too long an edge beside thin
+    triangles. Would one do, it might not be there yet: to ask it all the same was a third of an orbit's time.
     """
     if level == 0:
         return True
-    return (net.births[a] == level and net.flags[a] & WANTED != 0) or (
-        net.births[b] == level and net.flags[b] & WANTED != 0
-    )
+    one, two = net.vertices[a].flags & WANTED != 0, net.vertices[b].flags & WANTED != 0
+    if net.vertices[a].birth != level:
+        return two
+    if net.vertices[b].birth != level:
+        return one
+    return (one and (two or net.vertices[b].halves > 0)) or (two and net.vertices[a].halves > 0)
 
 
 @lean
 def spread_of(net, a, b, level):
     """How much normals vary about an edge and as much again: of what its newest ends were born between."""
     spread = 0.0
-    if net.births[a] == level:
+    if net.vertices[a].birth == level:
         spread = max(spread, net.vertices[a].spread)
-    if net.births[b] == level:
+    if net.vertices[b].birth == level:
         spread = max(spread, net.vertices[b].spread)
     return spread
-
-
-@lean
-def finest(limits):
-    """The level whose edges are not split, whatever they look like."""
-    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
-    return min(np.int64(most), LEVELS)
 
 
 @lean
@@ -70,7 +65,8 @@ def wants_edge(net, a, b, level, view, limits):
     The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
     of the frustum has moved by `slack`.
     """
-    if level >= finest(limits):
+    most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
+    if level >= min(most, LEVELS):
         return False, math.inf
     ensure_at(net, a, level)
     ensure_at(net, b, level)

@@ -12,8 +12,8 @@ ASK_BORN, ASK_LIMIT = 0, 1
 @lean
 def is_known(net, v, level):
     """Whether it is known where v is on a level not below its birth."""
-    flags = net.flags[v]
-    return (flags & LIMIT) != 0 or ((flags & BORN) != 0 and net.births[v] == level)
+    flags = net.vertices[v].flags
+    return (flags & LIMIT) != 0 or ((flags & BORN) != 0 and net.vertices[v].birth == level)
 
 
 @lean
@@ -28,7 +28,7 @@ def push_unknown(net, top, v, level):
     """Ask for where v is on a level, if it is not known yet."""
     if is_known(net, v, level):
         return top
-    return push(net, top, v, ASK_BORN if net.flags[v] & BORN == 0 else ASK_LIMIT)
+    return push(net, top, v, ASK_BORN if net.vertices[v].flags & BORN == 0 else ASK_LIMIT)
 
 
 @lean
@@ -36,4 +36,4 @@ def set_born(net, v, x, y, z):
     """Where a vertex was born."""
     vertex = net.vertices[v]
     vertex.born[0], vertex.born[1], vertex.born[2] = x, y, z
-    net.flags[v] |= BORN
+    net.vertices[v].flags |= BORN

@@ -10,6 +10,8 @@ edges of level l + 1.
 Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, sections 4 and 7.
 """
 
+import math
+
 import numpy as np
 
 from foveal.base.jit import lean
@@ -173,19 +175,27 @@ def find_edge(net, a, b):
 
 @lean
 def ask_around(net, v):
-    """Have the edges of all faces at a vertex asked anew."""
+    """Have the edges of all faces at a vertex asked that were not, since that could not matter."""
     first = np.int64(net.vertices[v].around)
     f = first
     while f != NONE:
-        enqueue(net, f)
+        ask_face(net, f)
         face = net.faces[f]
-        face.until[0] = face.until[1] = face.until[2] = 0.0
         f = np.int64(face.beside[(corner_at(face, v) + 2) % 3])
         if f == first:
             return
     f = first
     while f != NONE:
-        enqueue(net, f)
+        ask_face(net, f)
         face = net.faces[f]
-        face.until[0] = face.until[1] = face.until[2] = 0.0
         f = np.int64(face.beside[corner_at(face, v)])
+
+
+@lean
+def ask_face(net, f):
+    """The same of a face's."""
+    until = net.faces[f].until
+    for k in range(3):
+        if until[k] == math.inf:
+            until[k] = 0.0
+            enqueue(net, f)

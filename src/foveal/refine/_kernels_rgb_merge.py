@@ -48,7 +48,7 @@ def last_corner(net, f, v):
 @lean
 def is_mergeable_side(net, v, b, a):
     """Whether the faces at v from b to a are children of one triangle with its edge (a, b) split at v."""
-    level = np.int64(net.births[v]) - 1
+    level = np.int64(net.vertices[v].birth) - 1
     h = find_edge(net, v, b)
     if h == NONE:
         return False

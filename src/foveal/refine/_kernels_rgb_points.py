@@ -31,7 +31,7 @@ def position(net, v, level):
     """(x, y, z) of vertex v on a level not below its birth; what it takes is known."""
     vertex = net.vertices[v]
     x, y, z = vertex.born[0], vertex.born[1], vertex.born[2]
-    steps = level - net.births[v]
+    steps = level - net.vertices[v].birth
     if steps == 0:
         return x, y, z
     share = 1.0
@@ -44,7 +44,7 @@ def position(net, v, level):
 @lean
 def diamond_of(net, v):
     """The ends and apexes of the edge v splits; the right apex is NONE at the border."""
-    if net.flags[v] & PRESENT:
+    if net.vertices[v].flags & PRESENT:
         d = net.vertices[v].diamond
         return np.int64(d[0]), np.int64(d[1]), np.int64(d[2]), np.int64(d[3])
     face, e, c, x, y, s, step = side(net, v, LEFT)
@@ -71,7 +71,7 @@ def beside_apex(net, v, way):
 def loop_needs(net, top, v, ask):
     """Push what is still unknown of what it takes."""
     a, b, c, d = diamond_of(net, v)
-    level = np.int64(net.births[v])
+    level = np.int64(net.vertices[v].birth)
     if ask == ASK_BORN:
         top = push_unknown(net, top, a, level - 1)
         top = push_unknown(net, top, b, level - 1)
@@ -91,7 +91,7 @@ def loop_needs(net, top, v, ask):
 def loop_born(net, v):
     """Where v is born: in an edge, or in a border edge."""
     a, b, c, d = diamond_of(net, v)
-    level = np.int64(net.births[v]) - 1
+    level = np.int64(net.vertices[v].birth) - 1
     ax, ay, az = position(net, a, level)
     bx, by, bz = position(net, b, level)
     if d == NONE:
@@ -112,13 +112,13 @@ def loop_born(net, v):
 def loop_limit(net, v):
     """The limit of v: half itself, half its ring's mean; on a border four of itself to its two neighbours."""
     a, b, _, d = diamond_of(net, v)
-    level = np.int64(net.births[v])
+    level = np.int64(net.vertices[v].birth)
     x, y, z = position(net, a, level)
     bx, by, bz = position(net, b, level)
     x, y, z = x + bx, y + by, z + bz
     vertex = net.vertices[v]
     px, py, pz = vertex.born[0], vertex.born[1], vertex.born[2]
-    net.flags[v] |= LIMIT
+    net.vertices[v].flags |= LIMIT
     if d == NONE:
         vertex.limit[0] = (x + 4.0 * px) * SIXTH
         vertex.limit[1] = (y + 4.0 * py) * SIXTH
@@ -160,11 +160,11 @@ def ensure(net, v, ask):
     while top > 0:
         task = net.counts[STACK + top - 1]
         w, what = task >> 1, task & 1
-        if net.flags[w] & (LIMIT if what == ASK_LIMIT else BORN):
+        if net.vertices[w].flags & (LIMIT if what == ASK_LIMIT else BORN):
             top -= 1
             continue
         before = top
-        if what == ASK_LIMIT and net.flags[w] & BORN == 0:
+        if what == ASK_LIMIT and net.vertices[w].flags & BORN == 0:
             top = push(net, top, w, ASK_BORN)
             continue
         top = butterfly_needs(net, top, w) if is_butterfly else loop_needs(net, top, w, what)
@@ -183,7 +183,7 @@ def ensure(net, v, ask):
 def ensure_at(net, v, level):
     """Compute what it takes to say where v is on a level."""
     if not is_known(net, v, level):
-        ensure(net, v, ASK_BORN if net.births[v] == level else ASK_LIMIT)
+        ensure(net, v, ASK_BORN if net.vertices[v].birth == level else ASK_LIMIT)
 
 
 @lean
@@ -192,9 +192,9 @@ def set_normal(net, v):
 
     Those of its ends are known.
     """
-    net.flags[v] |= NORMAL
+    net.vertices[v].flags |= NORMAL
     a, b, c, d = diamond_of(net, v)
-    level = np.int64(net.births[v]) - 1
+    level = np.int64(net.vertices[v].birth) - 1
     for w in (a, b, c, d):  # the butterfly, and what was remembered of v, may have done without
         if w != NONE:
             ensure_at(net, w, level)

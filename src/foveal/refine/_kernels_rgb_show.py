@@ -25,12 +25,12 @@ from ._kernels_rgb_update import has_room
 def shown_levels(net, levels):
     """levels[v]: the highest level among a vertex and its neighbours in the mesh, on which it stands."""
     for v in range(net.counts[VERTICES]):
-        levels[v] = net.births[v] if net.flags[v] & PRESENT else FREE
+        levels[v] = net.vertices[v].birth if net.vertices[v].flags & PRESENT else FREE
     for f in range(net.counts[FACES]):
         face = net.faces[f]
         if face.code != FREE_CODE:
             a, b, c = face.corners[0], face.corners[1], face.corners[2]
-            level = max(net.births[a], max(net.births[b], net.births[c]))
+            level = max(net.vertices[a].birth, max(net.vertices[b].birth, net.vertices[c].birth))
             levels[a] = max(levels[a], level)
             levels[b] = max(levels[b], level)
             levels[c] = max(levels[c], level)
@@ -46,7 +46,7 @@ def place_all(net, levels, begin, is_limit, out):
             return i
         v = np.int64(i)
         if is_limit:
-            if net.flags[v] & LIMIT == 0:
+            if net.vertices[v].flags & LIMIT == 0:
                 ensure(net, v, ASK_LIMIT)
             limit = net.vertices[v].limit
             out[v, 0], out[v, 1], out[v, 2] = limit[0], limit[1], limit[2]
@@ -61,7 +61,7 @@ def forget(net, slots):
     """Free the slots of vertices that are not in the mesh."""
     for v in slots:
         remove(net, net.vertices[v].key)
-        net.births[v], net.flags[v] = FREE, 0
+        net.vertices[v].birth, net.vertices[v].flags = FREE, 0
         net.vertices[v].diamond[0] = net.counts[FREE_VERTEX]
         net.counts[FREE_VERTEX] = v
         net.counts[IN_USE] -= 1

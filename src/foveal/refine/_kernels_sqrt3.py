@@ -22,7 +22,7 @@ from ._kernels_sqrt3_layout import (
 )
 from ._kernels_sqrt3_measure import measure_corners
 from ._kernels_sqrt3_points import middle, near_point, position
-from ._kernels_sqrt3_slots import put, relink, set_state, sew, take_face, take_vertex
+from ._kernels_sqrt3_slots import adopt, put, relink, set_state, sew, take_face, take_vertex
 
 
 @lean
@@ -73,8 +73,10 @@ def born(net, a, b, c, pair, level, kind):
     vertex.triple[0], vertex.triple[1], vertex.triple[2], vertex.pair = a, b, c, pair
     vertex.twin = NONE
     vertex.kind = kind
+    vertex.child = NONE
     net.births[v] = level + 1
     net.flags[v] = parents(net, a, b, c, level)
+    adopt(net, v)
     return v
 
 

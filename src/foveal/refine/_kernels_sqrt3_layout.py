@@ -19,12 +19,17 @@ FREE = -1
 #: Kinds of vertices.
 INSIDE, LATE, BORDER, UNMEASURED, CORNER = 0, 1, 2, 3, 4
 
-#: Flags of vertices: its birth face is to be split for itself; for finer ones; it meets the criteria; and
-#: which corners of the birth face are its parents, 8 << k: those born with it.
-WANTED, NEEDED, MEETS, PARENTS, PARENT = 1, 2, 4, 56, 8
+#: Flags of vertices: its birth face is to be split for itself; it meets the criteria; and which corners of
+#: the birth face are its parents, 8 << k: those born with it.
+WANTED, MEETS, PARENTS, PARENT = 1, 2, 56, 8
 
-#: Slots ever used, how many of them are free, the first free ones; the queue's first place and length.
+#: Slots ever used, how many of them are free, the first free ones; the queue's first place and length; the
+#: first vertex that may have to go.
 FACES, VERTICES, FREE_FACES, FREE_VERTICES, FREE_FACE, FREE_VERTEX, FIRST, QUEUED = 0, 1, 2, 3, 4, 5, 6, 7
+DOUBTFUL = 8
+
+#: Behind them: vertices to be considered anew. Of a generation there are at most twelve.
+STACK, WORDS = 9, 9 + 512
 
 
 @lean

@@ -6,6 +6,7 @@ import numpy as np
 from foveal.base.jit import lean
 
 from ._kernels_sqrt3_layout import (
+    DOUBTFUL,
     FACES,
     FIRST,
     FREE,
@@ -14,6 +15,7 @@ from ._kernels_sqrt3_layout import (
     FREE_VERTEX,
     FREE_VERTICES,
     NONE,
+    PARENT,
     QUEUED,
     VERTICES,
     seam,
@@ -58,8 +60,59 @@ def give_face(net, f):
 
 
 @lean
+def adopt(net, v):
+    """Make a new vertex known to its parents."""
+    for k in range(3):
+        if net.flags[v] & (PARENT << k):
+            parent = net.vertices[net.vertices[v].triple[k]]
+            net.vertices[v].siblings[k] = parent.child
+            parent.child = v
+
+
+@lean
+def disown(net, v):
+    """The inverse. A parent that has no child left may have to go."""
+    for k in range(3):
+        if net.flags[v] & (PARENT << k):
+            u = np.int64(net.vertices[v].triple[k])
+            c = np.int64(net.vertices[u].child)
+            if c == v:
+                net.vertices[u].child = net.vertices[v].siblings[k]
+                if net.vertices[u].child == NONE:
+                    doubt(net, u)
+                continue
+            while next_child(net, u, c) != v:
+                c = next_child(net, u, c)
+            net.vertices[c].siblings[birth_corner(net, c, u)] = net.vertices[v].siblings[k]
+
+
+@lean
+def birth_corner(net, v, u):
+    """Which corner of v's birth face u is."""
+    triple = net.vertices[v].triple
+    return 0 if triple[0] == u else (1 if triple[1] == u else 2)
+
+
+@lean
+def next_child(net, u, c):
+    """The child of u after c, or NONE."""
+    return np.int64(net.vertices[c].siblings[birth_corner(net, c, u)])
+
+
+@lean
+def doubt(net, v):
+    """Have it seen to whether v is to be in the mesh."""
+    vertex = net.vertices[v]
+    if not vertex.is_doubtful:  # which it may be from the slot's last use: once is enough
+        vertex.is_doubtful = True
+        vertex.next = net.counts[DOUBTFUL]
+        net.counts[DOUBTFUL] = v
+
+
+@lean
 def give_vertex(net, v):
     """Free a vertex slot."""
+    disown(net, v)
     net.births[v] = FREE
     net.vertices[v].triple[0] = net.counts[FREE_VERTEX]
     net.counts[FREE_VERTEX] = v

@@ -27,21 +27,20 @@ from ._kernels_sqrt3_ask import (
     was_wanted_by_parent,
 )
 from ._kernels_sqrt3_layout import (
+    DOUBTFUL,
     FACES,
     FREE,
     FREE_VERTICES,
     MEETS,
-    NEEDED,
     NONE,
-    PARENT,
-    PARENTS,
     QUEUED,
+    STACK,
     VERTICES,
     WANTED,
     corner_at,
     is_half,
 )
-from ._kernels_sqrt3_slots import dequeue, enqueue
+from ._kernels_sqrt3_slots import dequeue, doubt, enqueue, next_child
 from ._kernels_sqrt3_undo import unsplit
 
 #: Slots that a single examination may use: forced splits go down through the generations. Along a seam also
@@ -50,72 +49,40 @@ ROOM, LITTLE_ROOM = 512, 8
 
 
 @lean
-def sort_by_birth(births, count, starts, order):
-    """order: the vertices born after level 0, by birth; returns how many."""
-    starts[:] = 0
-    for v in range(count):
-        if births[v] > 0:
-            starts[births[v] + 1] += 1
-    for i in range(1, len(starts)):
-        starts[i] += starts[i - 1]
-    total = starts[len(starts) - 1]
-    for v in range(count):
-        if births[v] > 0:
-            order[starts[births[v]]] = v
-            starts[births[v]] += 1
-    return total
+def review(net, view, limits, drift):
+    """Ask anew where answers no longer hold, and see what follows of what is wanted."""
+    for i in range(net.counts[VERTICES]):
+        if net.births[i] <= 0 or net.vertices[i].until > drift:
+            continue
+        v, vertex = np.int64(i), net.vertices[i]
+        a, b, c = vertex.triple[0], vertex.triple[1], vertex.triple[2]
+        meets, slack = wants_triangle(net, a, b, c, net.births[v] - 1, view, limits)
+        vertex.until = (drift + slack) * ROUNDED
+        if meets != (net.flags[v] & MEETS != 0):
+            net.flags[v] ^= MEETS
+            reconsider(net, v)
 
 
 @lean
-def review(net, order, count, view, limits, drift):
-    """Set WANTED anew for the vertices of `order`, by rising birth, then NEEDED from last to first."""
-    for i in range(count):
-        v = np.int64(order[i])
-        flags = net.flags[v] & (MEETS | PARENTS)
-        if was_wanted_by_parent(net, v):
-            vertex = net.vertices[v]
-            if vertex.until <= drift:
-                level = net.births[v] - 1
-                a, b, c = vertex.triple[0], vertex.triple[1], vertex.triple[2]
-                meets, slack = wants_triangle(net, a, b, c, level, view, limits)
-                flags = (flags & PARENTS) | (MEETS if meets else 0)
-                vertex.until = (drift + slack) * ROUNDED
-            if flags & MEETS:
-                flags |= WANTED
-        if flags & ~net.flags[v] & WANTED:
-            wake(net, v)
-        net.flags[v] = flags
-    for i in range(count - 1, -1, -1):
-        v = np.int64(order[i])
-        if net.flags[v] & (WANTED | NEEDED) == 0 and is_seen_beyond(net, v, view, limits):
-            need(net, v)
-        if net.flags[v] & (WANTED | NEEDED):
-            need_parents(net, v)
-            twin = np.int64(net.vertices[v].twin)
-            if twin != NONE:  # wanted on one side of a seam only, it may have come after
-                need(net, twin)
-                need_parents(net, twin)
-
-
-@lean
-def need_parents(net, v):
-    """Keep the splits of which the birth face of vertex v is made."""
-    flags = net.flags[v]
-    for k in range(3):
-        if flags & (PARENT << k):
-            need(net, np.int64(net.vertices[v].triple[k]))
-
-
-@lean
-def need(net, v):
-    """Keep the split that made vertex v, and at a seam that beyond."""
-    net.flags[v] |= NEEDED
-    p, t = np.int64(net.vertices[v].pair), np.int64(net.vertices[v].twin)
-    if p != NONE:
-        net.flags[p] |= NEEDED
-    if t != NONE:
-        net.flags[t] |= NEEDED
-        net.flags[net.vertices[t].pair] |= NEEDED
+def reconsider(net, v):
+    """Set anew whether v is wanted, and its children if that is news."""
+    net.counts[STACK], top = v, 1
+    while top > 0:
+        top -= 1
+        w = net.counts[STACK + top]
+        is_now = net.flags[w] & MEETS != 0 and was_wanted_by_parent(net, w)
+        if is_now == (net.flags[w] & WANTED != 0):
+            continue
+        net.flags[w] ^= WANTED
+        if is_now:
+            wake(net, w)
+        else:
+            doubt(net, w)
+        c = np.int64(net.vertices[w].child)
+        while c != NONE:
+            net.counts[STACK + top] = c
+            top += 1
+            c = next_child(net, w, c)
 
 
 @lean
@@ -135,15 +102,54 @@ def wake(net, v):
 
 
 @lean
-def coarsen(net, order, count):
-    """Undo the splits whose vertices are not needed, finest first; returns how many."""
-    undone = 0
-    for i in range(count - 1, -1, -1):
-        v = np.int64(order[i])
-        if net.flags[v] & (WANTED | NEEDED) == 0 and net.births[v] != FREE:
+def coarsen(net, view, limits):
+    """Undo the splits that may have to go and are not needed, and those needed by them alone; how many."""
+    undone, held = 0, np.int64(NONE)
+    while net.counts[DOUBTFUL] != NONE:
+        v = net.counts[DOUBTFUL]
+        vertex = net.vertices[v]
+        net.counts[DOUBTFUL] = vertex.next
+        is_to_go = net.births[v] > 0 and not is_needed(net, v)
+        if is_to_go and is_held(net, v, view, limits):
+            vertex.next, held = held, v
+            continue
+        vertex.is_doubtful = False
+        if is_to_go:
             unsplit(net, v)
             undone += 1
+    net.counts[DOUBTFUL] = held  # from the next view they may look different
     return undone
+
+
+@lean
+def is_needed(net, v):
+    """Whether a vertex, or one that came with it, at a border or beyond a seam, is wanted or has children."""
+    for k in range(4):
+        u = with_it(net, v, k)
+        if u != NONE and (net.flags[u] & WANTED != 0 or net.vertices[u].child != NONE):
+            return True
+    return False
+
+
+@lean
+def is_held(net, v, view, limits):
+    """Whether a third beside has one of these kept."""
+    for k in range(4):
+        u = with_it(net, v, k)
+        if u != NONE and is_seen_beyond(net, u, view, limits):
+            return True
+    return False
+
+
+@lean
+def with_it(net, v, k):
+    """The k-th of the vertices that came with v, or NONE: itself, its pair, its twin, its twin's pair."""
+    p, t = np.int64(net.vertices[v].pair), np.int64(net.vertices[v].twin)
+    if k < 2:
+        return v if k == 0 else p
+    if t == NONE or k == 2:
+        return t
+    return np.int64(net.vertices[t].pair)
 
 
 @lean
@@ -174,7 +180,10 @@ def split_as(net, f, is_own, until, view, limits, drift):
 def mark(net, b, is_own, until):
     """Say of a new vertex, and its pair, whether its birth face was wanted split itself."""
     c = np.int64(net.vertices[b].pair)
-    net.flags[b] |= MEETS | WANTED if is_own else NEEDED
+    if is_own:
+        net.flags[b] |= MEETS | WANTED
+    else:
+        doubt(net, b)
     net.vertices[b].until = until if is_own else 0.0
     if c != NONE:
         net.flags[c], net.vertices[c].until = net.flags[b], net.vertices[b].until

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._kernels_sqrt3_layout import FIRST
+from ._kernels_sqrt3_layout import FIRST, WORDS
 
 __all__ = ["FACE", "VERTEX", "Net"]
 
@@ -25,8 +25,9 @@ FACE = np.dtype(
 
 #: A vertex: where it is at every level (`_kernels_sqrt3_points.py`), the corners of the face in which it was
 #: born, the other vertex born in the same border edge, the one at the same place beyond a seam, one of its
-#: faces, and up to which drift it is known whether its birth face meets the criteria. Of a free slot
-#: `triple[0]` is the next.
+#: faces, up to which drift it is known whether its birth face meets the criteria; one of those born in a
+#: face that it is a parent of, and the next of each of its parents'; the next that may have to go, if it may.
+#: Of a free slot `triple[0]` is the next.
 VERTEX = np.dtype(
     [
         ("born", np.float64, 3),
@@ -37,7 +38,11 @@ VERTEX = np.dtype(
         ("twin", np.int32),
         ("around", np.int32),
         ("until", np.float32),
+        ("child", np.int32),
+        ("siblings", np.int32, 3),
+        ("next", np.int32),
         ("kind", np.uint8),
+        ("is_doubtful", np.bool_),
     ],
     align=True,
 )
@@ -61,7 +66,7 @@ class Net(NamedTuple):
         Of the control mesh's vertices: how much nearer to their limit they come with each level.
     queue : (F,) int32
         A ring of faces that have to be asked whether they are wanted split.
-    counts : (8,) int64
+    counts : (WORDS,) int64
     """
 
     faces: NDArray[Any]
@@ -84,7 +89,7 @@ class Net(NamedTuple):
             np.zeros((vertices, 3), np.float32),
             np.zeros(base),
             np.zeros(faces, np.int32),
-            np.zeros(8, np.int64),
+            np.zeros(WORDS, np.int64),
         )
 
     def grown(self, faces: int, vertices: int, /) -> "Net":

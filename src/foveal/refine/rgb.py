@@ -180,7 +180,7 @@ class Rgb:
         """The mesh as it is: faces in no particular order, counter-clockwise as those of the control mesh."""
         slots, net = self.slots(positions=positions), self._state.net
         is_face = net.faces["code"][: len(slots.faces)] != FREE_CODE
-        is_used = net.flags[: len(slots.positions)] & PRESENT != 0
+        is_used = net.vertices["flags"][: len(slots.positions)] & PRESENT != 0
         index = np.cumsum(is_used, dtype=np.int32) - 1
         return TriMesh(slots.positions[is_used], index[slots.faces[is_face]].astype(np.int32))
 
@@ -193,7 +193,7 @@ class Rgb:
         net = self._state.net
         faces = net.faces[: net.counts[FACES]]
         is_face = faces["code"] != FREE_CODE
-        is_used = net.flags[: len(placed)] & PRESENT != 0
+        is_used = net.vertices["flags"][: len(placed)] & PRESENT != 0
         return Slots(
             np.ascontiguousarray(faces["corners"]),
             placed,
@@ -206,10 +206,9 @@ class Rgb:
     def bytes_used(self) -> int:
         """What the arrays take for the slots in use, all told."""
         net = self._state.net
-        a_vertex = net.vertices.itemsize + net.births.itemsize + net.flags.itemsize
         return (
             int(net.counts[FACES]) * net.faces.itemsize
-            + int(net.counts[VERTICES]) * a_vertex
+            + int(net.counts[VERTICES]) * net.vertices.itemsize
             + sum(a.nbytes for a in (net.table, net.base, net.counts))
         )
 

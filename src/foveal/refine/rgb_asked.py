@@ -36,8 +36,8 @@ def bring_measured(state: State, measure: Measure, scale: float, most_faces: int
 
 def _answer_split(state: State, measure: Measure, scale: float) -> None:
     """Ask about the edges that are split and were not asked yet."""
-    net = state.net
-    is_asked = (net.flags & PRESENT != 0) & (net.births > 0) & (net.vertices["until"] < np.inf)
+    vertices = state.net.vertices
+    is_asked = (vertices["flags"] & PRESENT != 0) & (vertices["birth"] > 0) & (vertices["until"] < np.inf)
     slots = np.nonzero(is_asked)[0].astype(np.int32)
     for order in np.split(slots, range(_EDGES, len(slots), _EDGES)):
         edges, begin = _room(len(order)), 0

@@ -30,25 +30,29 @@ FACE = np.dtype(
     align=True,
 )
 
-#: A vertex, in the mesh or only computed: where it was born, its limit, how much nearer to that it comes with
-#: each level; up to which drift it is known whether the edge it splits meets the criteria; the normal and
-#: spread of the triangles it was born between; the ends and apexes of that edge; its address, one of its
-#: faces, and when it was last used; the next that may have to go, if it may; how many splits take it. Of a
-#: free slot `diamond[0]` is the next one.
+#: A vertex, in the mesh or only computed, in two cache lines: where it was born, its limit; up to which drift
+#: it is known whether the edge it splits meets the criteria; how far the normals are from its own of the
+#: triangles it was born between; the level it was born on, FREE for slots not in use; how many splits take
+#: it, and how many wanted ones of half edges; how much nearer to its limit it comes with each level; its
+#: address, its normal, the ends and apexes of the edge it splits, one of its faces, when it was last used,
+#: the next that may have to go, if it may. Of a free slot `diamond[0]` is the next one.
 VERTEX = np.dtype(
     [
         ("born", np.float64, 3),
         ("limit", np.float64, 3),
-        ("shrink", np.float64),
         ("until", np.float64),
-        ("normal", np.float32, 3),
         ("spread", np.float32),
-        ("diamond", np.int32, 4),
+        ("birth", np.int8),
+        ("flags", np.uint8),
+        ("needed", np.uint8),
+        ("halves", np.uint8),
+        ("shrink", np.float64),
         ("key", np.int64),
+        ("normal", np.float32, 3),
+        ("diamond", np.int32, 4),
         ("around", np.int32),
         ("stamp", np.uint32),
         ("next", np.int32),
-        ("needed", np.uint8),
         ("is_doubtful", np.bool_),
     ],
     align=True,
@@ -73,9 +77,6 @@ class RgbNet(NamedTuple):
     ----------
     faces : (F,) FACE
     vertices : (V,) VERTEX
-    births : (V,) int8
-        The level a vertex was born on; FREE for slots not in use.
-    flags : (V,) uint8
     table : (2^n,) int32
         Vertex slots by hashed address, EMPTY where there is none.
     base : (m,) BASE
@@ -84,8 +85,6 @@ class RgbNet(NamedTuple):
 
     faces: NDArray[Any]
     vertices: NDArray[Any]
-    births: NDArray[np.int8]
-    flags: NDArray[np.uint8]
     table: NDArray[np.int32]
     base: NDArray[Any]
     counts: NDArray[np.int64]
@@ -96,10 +95,8 @@ class RgbNet(NamedTuple):
         base = np.zeros(len(cage.faces), BASE)
         base["corners"], base["mates"] = cage.faces, _mates(cage)
         return cls(
-            np.zeros(faces, FACE),
-            np.zeros(vertices, VERTEX),
-            np.full(vertices, -1, np.int8),
-            np.zeros(vertices, np.uint8),
+            _in_lines(faces, FACE),
+            _in_lines(vertices, VERTEX),
             _empty_table(vertices),
             base,
             np.zeros(WORDS, np.int64),
@@ -108,16 +105,22 @@ class RgbNet(NamedTuple):
     def grown(self, faces: int, vertices: int, /) -> "RgbNet":
         """The same with more room; the table is to be filled."""
         larger = self._replace(
-            faces=np.zeros(faces, FACE),
-            vertices=np.zeros(vertices, VERTEX),
-            births=np.full(vertices, -1, np.int8),
-            flags=np.zeros(vertices, np.uint8),
+            faces=_in_lines(faces, FACE),
+            vertices=_in_lines(vertices, VERTEX),
             table=_empty_table(vertices),
         )
-        for name in ("faces", "vertices", "births", "flags"):
+        for name in ("faces", "vertices"):
             old: NDArray[Any] = getattr(self, name)
             getattr(larger, name)[: len(old)] = old
         return larger
+
+
+def _in_lines(count: int, dtype: "np.dtype[Any]") -> NDArray[Any]:
+    """Zeros that begin where a cache line does."""
+    size, line = count * dtype.itemsize, 64
+    room = np.zeros(size + line, np.uint8)
+    begin = -room.ctypes.data % line
+    return room[begin : begin + size].view(dtype)
 
 
 def _empty_table(vertices: int) -> NDArray[np.int32]:

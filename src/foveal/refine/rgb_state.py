@@ -27,7 +27,7 @@ from .rgb_net import RgbNet
 __all__ = ["State"]
 
 #: Room to begin with, beyond the control mesh: pages that are never touched cost nothing.
-_FACES, _VERTICES = 1 << 16, 1 << 16
+_FACES, _VERTICES = 1 << 17, 1 << 17
 
 
 class State:
@@ -56,7 +56,7 @@ class State:
         # Loop's surface stays in the control mesh's box, the butterfly's does not.
         is_loop = self.net.counts[SCHEME] != BUTTERFLY
         count = int(self.net.counts[BASE_COUNT if is_loop else VERTICES])
-        points = self.net.vertices["born"][:count][self.net.flags[:count] & BORN != 0]
+        points = self.net.vertices["born"][:count][self.net.vertices["flags"][:count] & BORN != 0]
         sides = np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
         return np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 3)
 
@@ -82,7 +82,8 @@ class State:
         if int(net.counts[IN_USE] - net.counts[PRESENT_COUNT]) <= capacity:
             return
         count = int(net.counts[VERTICES])
-        outside = np.nonzero((net.births[:count] >= 0) & (net.flags[:count] & PRESENT == 0))[0]
+        vertices = net.vertices[:count]
+        outside = np.nonzero((vertices["birth"] >= 0) & (vertices["flags"] & PRESENT == 0))[0]
         excess = len(outside) - capacity
         stamps = net.vertices["stamp"][outside]
         oldest = np.argpartition(stamps, excess - 1)[:excess]

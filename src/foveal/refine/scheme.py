@@ -2,6 +2,10 @@
 
 from typing import Literal, Protocol, get_args
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from foveal.base.errors import FovealError
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
@@ -34,7 +38,9 @@ class Refiner(Protocol):
         ...
 
 
-def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -> Refiner:
+def refiner(
+    mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", sharp: ArrayLike | None = None, name: str = "mesh"
+) -> Refiner:
     """A refinement of a control mesh by a scheme.
 
     Parameters
@@ -43,13 +49,15 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
         An oriented surface, open or closed.
     scheme : "sqrt3", "loop" or "butterfly"
         √3 subdivision, or RGB triangulations over the rules of Loop or of the modified butterfly.
+    sharp : (k, 2) int, optional
+        The vertices of edges that stay sharp, as for `Sqrt3`; for √3 alone.
     name : str
         What errors call the mesh.
 
     Raises
     ------
     FovealError
-        If the mesh is no oriented surface.
+        If the mesh is no oriented surface, or has sharp edges that the scheme does not know.
     ValueError
         If there is no such scheme.
 
@@ -62,5 +70,9 @@ def refiner(mesh: TriMesh, /, *, scheme: Scheme = "sqrt3", name: str = "mesh") -
     if scheme not in SCHEMES:
         raise ValueError(f"scheme must be one of {', '.join(SCHEMES)}, got {scheme!r}")
     if scheme == "sqrt3":
-        return Sqrt3(mesh, name=name)
+        return Sqrt3(mesh, sharp=sharp, name=name)
+    if sharp is not None and len(np.asarray(sharp)):
+        raise FovealError(
+            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or leave them out."
+        )
     return Rgb(mesh, scheme=scheme, name=name)

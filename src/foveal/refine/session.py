@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
 from foveal.mesh.shapes import tetrahedron
@@ -45,6 +45,8 @@ class Session:
     mesh : TriMesh
         An oriented surface.
     scheme : "sqrt3", "loop" or "butterfly"
+    sharp : (k, 2) int, optional
+        The vertices of edges that stay sharp; for √3.
     name : str
         What errors call the mesh.
     clock : function
@@ -69,6 +71,7 @@ class Session:
         /,
         *,
         scheme: Scheme = "sqrt3",
+        sharp: ArrayLike | None = None,
         name: str = "mesh",
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
@@ -76,7 +79,7 @@ class Session:
         extent = float(np.abs(mesh.positions - self.origin).max())
         if not extent < float(np.finfo(np.float32).max):
             raise FovealError(f"{name}: it is too large to be drawn. Scale it down.")
-        self._refined = refiner(mesh, scheme=scheme, name=name)
+        self._refined = refiner(mesh, scheme=scheme, sharp=sharp, name=name)
         self._clock = clock
         self._lock = threading.Lock()
         self._newest: Request | None = None

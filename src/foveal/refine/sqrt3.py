@@ -18,7 +18,7 @@ from foveal.view.camera import Camera
 from . import _kernels_sqrt3_base as base_kernels
 from . import _kernels_sqrt3_show as show
 from . import _kernels_sqrt3_update as kernels
-from ._kernels_sqrt3_layout import FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
+from ._kernels_sqrt3_layout import DOUBTFUL, FACES, FREE_FACES, FREE_VERTICES, QUEUED, VERTICES
 from .cage import Cage
 from .criteria import MAX_LEVEL, Criteria, view_of
 from .drift import Drift
@@ -95,10 +95,10 @@ class Sqrt3:
         cage = Cage.of(mesh, sharp=sharp, name=name)
         count, faces = len(cage.positions), len(cage.faces)
         net = Net.empty(2 * faces + _FACES, count + faces + _VERTICES, count)
-        net.counts[:2] = faces, count
+        net.counts[[FACES, VERTICES, DOUBTFUL]] = faces, count, -1
         net.faces["corners"][:faces], net.faces["beside"][:faces] = cage.faces, cage.beside
         net.vertices["around"][cage.faces] = np.arange(faces, dtype=np.int32)[:, None]
-        net.vertices["triple"][:count] = net.vertices["pair"][:count] = -1
+        net.vertices["triple"][:count] = net.vertices["pair"][:count] = net.vertices["child"][:count] = -1
         net.vertices["twin"][:count] = cage.twins
         surface = cage.positions, cage.starts, cage.ring, cage.is_border, cage.is_corner
         base_kernels.base_points(*surface, net.vertices, net.normals, net.shrinks)
@@ -156,11 +156,8 @@ class Sqrt3:
         if not self._drift.move(view, limits, self._corners):
             net.faces["until"] = net.vertices["until"] = 0.0
         drift = self._drift.total
-        order = np.empty(int(net.counts[VERTICES]), np.int32)
-        starts = np.empty(MAX_LEVEL + 3, np.int64)
-        count = kernels.sort_by_birth(net.births, len(order), starts, order)
-        kernels.review(net, order, count, view, limits, drift)
-        undone = int(kernels.coarsen(net, order, count))
+        kernels.review(net, view, limits, drift)
+        undone = int(kernels.coarsen(net, view, limits))
         kernels.wake_expired(net, drift)
         return undone
 

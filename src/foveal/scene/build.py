@@ -1,6 +1,7 @@
 """A mesh, in a file or in memory, into a `.fov`."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
@@ -12,7 +13,7 @@ from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import Executor
 from foveal.mesh.trimesh import TriMesh
 
-from .cage_file import CageReport, is_cage, read_cage, write_cage
+from .cage_file import CageReport, ControlMesh, is_cage, read_cage, write_cage
 from .refinement import Refinement, RefineOptions, chosen
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def build(
         Number of local threads; by default one a processor.
     scheme : "sqrt3", "loop" or "butterfly", optional
         Keep the mesh as a control mesh, to be refined by this scheme where it is looked at.
-    criteria, positions, budget, rate
+    criteria, positions, budget, rate, sharp_edges
         With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
@@ -118,7 +119,7 @@ def build(
     refinement = chosen(options)
     given = {k: v for k, v in options.items() if v is not None and k not in RefineOptions.__annotations__}
     if refinement is not None:
-        return _build_cage(mesh, output, refinement, given, progress)
+        return _build_cage(mesh, output, refinement, options, progress)
     up: Any = given.pop("up", None)
     if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
@@ -135,28 +136,52 @@ def build(
 
 
 def _build_cage(
-    mesh: Path | TriMesh, output: Path, refinement: Refinement, given: dict[str, Any], progress: Progress
+    mesh: Path | TriMesh, output: Path, refinement: Refinement, options: BuildOptions, progress: Progress
 ) -> CageReport:
-    """Keep a mesh as a control mesh."""
+    """Keep a mesh as a control mesh; of one of the same scheme, what was not chosen stays as it is."""
     from foveal.base.jit import is_cold
+    from foveal.mesh.topology import weld
 
+    from .facing import tell_inside_out
     from .read import read
 
     name = "mesh" if isinstance(mesh, TriMesh) else str(mesh)
+    _refuse_shape(name, options)
+    if is_cold():
+        progress.note("First run: the kernels are compiled, which takes about a minute, once.")
+    if isinstance(mesh, Path) and is_cage(mesh):
+        cage = read_cage(mesh)
+        # What another scheme was told says little: its iterations are of other triangles.
+        is_same = cage.refinement.scheme == refinement.scheme
+        cage = replace(cage, refinement=cage.refinement.chosen(options) if is_same else refinement)
+    else:
+        cage = ControlMesh(mesh if isinstance(mesh, TriMesh) else read(mesh), refinement, "y")
+    sharp, angle = cage.sharp, options.get("sharp_edges")
+    if sharp is not None and refinement.scheme != "sqrt3":
+        progress.note(f"Sharp edges that are left out, since {refinement.scheme} knows none: {len(sharp):,}.")
+        sharp = None
+    report = write_cage(
+        cage.mesh,
+        output,
+        refinement=cage.refinement,
+        up=options.get("up") or cage.up,
+        sharp_edges=sharp if angle is None else angle,
+        name=name,
+    )
+    if report.welded:
+        progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
+    tell_inside_out(weld(cage.mesh)[0], name, progress)
+    return report
+
+
+def _refuse_shape(name: str, options: BuildOptions) -> None:
+    given = {option for option, value in options.items() if value is not None}
     shaping = [option for option in ("bits", "step", "normals") if option in given]
     if shaping:
         raise FovealError(
             f"{name}: a control mesh is kept as it is, so {' and '.join(shaping)} would change nothing. "
             "Leave that out."
         )
-    if is_cold():
-        progress.note("First run: the kernels are compiled, which takes about a minute, once.")
-    up = given.get("up") or (read_cage(mesh).up if isinstance(mesh, Path) and is_cage(mesh) else "y")
-    cage = mesh if isinstance(mesh, TriMesh) else read(mesh)
-    report = write_cage(cage, output, refinement=refinement, up=up, name=name)
-    if report.welded:
-        progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
-    return report
 
 
 def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Path | TriMesh, Path]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike
@@ -20,6 +20,7 @@ if TYPE_CHECKING:  # which knows of kernels: half a second for those who show pa
 __all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
 KIND, VERSION = "cage", 1
+_MOST_SHARP = 500_000  # their list is part of the header, of which 16 MiB are read
 _MOST = 1 << 26  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
 
 
@@ -34,11 +35,14 @@ class ControlMesh:
     refinement : Refinement
         What is meant where nothing else is chosen.
     up : "x", "y" or "z"
+    sharp : (k, 2) int32 or None
+        The vertices of edges that stay sharp, where there are any.
     """
 
     mesh: "TriMesh"
     refinement: Refinement
     up: str
+    sharp: NDArray[np.int32] | None = None
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,8 @@ class CageReport:
         Of the control mesh.
     welded : int
         Vertices that lay where another one does, made one with it.
+    sharp_edges : int
+        Those that stay sharp.
     scheme : str
     bytes : int
         Of the file.
@@ -59,14 +65,24 @@ class CageReport:
     triangles: int
     vertices: int
     welded: int
+    sharp_edges: int
     scheme: str
     bytes: int
 
 
 def write_cage(
-    mesh: "TriMesh", path: PathLike, /, *, refinement: Refinement, up: str = "y", name: str = "mesh"
+    mesh: "TriMesh",
+    path: PathLike,
+    /,
+    *,
+    refinement: Refinement,
+    up: str = "y",
+    sharp_edges: ArrayLike | None = None,
+    name: str = "mesh",
 ) -> CageReport:
     """Write a control mesh; vertices at one place become one.
+
+    `sharp_edges` is an angle by which those bend that stay sharp, or (k, 2) int, their vertices then.
 
     Raises
     ------
@@ -81,6 +97,7 @@ def write_cage(
     if max(len(positions), len(faces)) > _MOST:
         raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
     Cage.of(welded, name=name)
+    sharp = _sharp_of(welded, sharp_edges, name)
     low, high, origin = _box(positions)
     header = {
         "generator": f"foveal {__version__}",
@@ -89,12 +106,28 @@ def write_cage(
         "up": up,
         "vertices": len(positions),
         "triangles": len(faces),
+        **({"sharp_edges": sharp.reshape(-1).tolist()} if len(sharp) else {}),
         **refinement_json(refinement),
     }
     with create(path, kind=KIND, version=VERSION) as writer:
         writer.finish(header, positions.astype("<f8").tobytes() + faces.astype("<u4").tobytes())
     repeated = len(mesh.positions) - len(positions)
-    return CageReport(len(faces), len(positions), repeated, refinement.scheme, Path(path).stat().st_size)
+    size = Path(path).stat().st_size
+    return CageReport(len(faces), len(positions), repeated, len(sharp), refinement.scheme, size)
+
+
+def _sharp_of(mesh: "TriMesh", given: ArrayLike | None, name: str) -> NDArray[np.int32]:
+    """(k, 2): the edges that an angle makes sharp, or those given."""
+    from foveal.refine.sharp import sharp_edges
+
+    found = np.array([] if given is None else given)
+    sharp = sharp_edges(mesh, float(found)) if found.ndim == 0 else found.reshape(-1, 2).astype(np.int32)
+    if len(sharp) > _MOST_SHARP:
+        raise FovealError(
+            f"{name}: it has {len(sharp):,} sharp edges, more than the {_MOST_SHARP:,} that a file holds. "
+            "Ask for a larger angle."
+        )
+    return sharp
 
 
 def is_cage(path: PathLike, /) -> bool:
@@ -140,13 +173,22 @@ def control_mesh(file: Container, /) -> ControlMesh:
     up = header.get("up")
     if up not in ("x", "y", "z"):
         raise _damaged(file, "up")
-    return ControlMesh(mesh, refinement_of(header, file.name), up)
+    return ControlMesh(mesh, refinement_of(header, file.name), up, _sharp(file, vertices))
 
 
 def _box(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
     """Least and greatest corner, and the origin: the middle, halved first so that no sum overflows."""
     low, high = positions.min(axis=0), positions.max(axis=0)
     return low, high, 0.5 * low + 0.5 * high
+
+
+def _sharp(file: Container, vertices: int) -> NDArray[np.int32] | None:
+    """The edges that stay sharp; that each is an edge is for whoever refines."""
+    listed = file.header.get("sharp_edges", [])
+    is_list = isinstance(listed, list) and len(listed) % 2 == 0
+    if not is_list or not all(type(v) is int and 0 <= v < vertices for v in listed):
+        raise _damaged(file, "sharp_edges")
+    return np.array(listed, np.int32).reshape(-1, 2) if listed else None
 
 
 def _count(file: Container, key: str) -> int:

@@ -84,9 +84,12 @@ def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
 
     if original is not None:
         raise FovealError(f"{path}: a control mesh has no errors to be measured. Leave the original out.")
-    surface = Cage.of(read_cage(path).mesh, name=str(path))
+    cage = read_cage(path)
+    surface = Cage.of(cage.mesh, name=str(path))
+    Cage.of(cage.mesh, sharp=cage.sharp, name=str(path))
     return {
         "triangles": len(surface.faces),
         "vertices": len(surface.positions),
+        "sharp_edges": 0 if cage.sharp is None else len(cage.sharp),
         "is_closed": not bool(surface.is_border.any()),
     }

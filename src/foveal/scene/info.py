@@ -126,6 +126,7 @@ def _cage_info(file: Container, size: int) -> dict[str, Any]:
         "box": file.header["box"],
         "up": cage.up,
         "attributes": [],
+        "sharp_edges": 0 if cage.sharp is None else len(cage.sharp),
         **refinement_json(cage.refinement),
         "generator": file.header.get("generator"),
     }

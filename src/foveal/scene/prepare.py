@@ -22,16 +22,17 @@ from foveal.base.progress import SILENT, Progress
 from foveal.mesh.trimesh import TriMesh
 
 from .build import BuildOptions, Source, build, checked, title_of
-from .cage_file import is_cage
+from .cage_file import is_cage, read_cage
+from .facing import Once, tell_inside_out
 from .refinement import RefineOptions, chosen
-from .scene import Scene, read_scene, scene_of
+from .scene import Layer, Scene, read_scene, scene_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
 
 CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
-_SHAPING = ("bits", "step", "normals", "up")  # the options that change the bytes of a build
+_SHAPING = ("bits", "step", "normals", "up", "sharp_edges")  # the options that change the bytes of a build
 _REFINING = ("criteria", "positions", "budget", "rate")  # and those that a scene can say of a control mesh
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20
@@ -69,10 +70,29 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
     source = checked(source)
     if isinstance(source, Path) and source.suffix.lower() == ".json":
         refuse_shaping(source, options)
-        return read_scene(source)
+        scene = read_scene(source)
+        for layer in scene.layers:
+            _look_at(layer, str(layer.path), progress)
+        return scene
+    progress = Once(progress)
     title = "mesh" if isinstance(source, TriMesh) else title_of(source)
     path = prepare(source, progress=progress, **options)
-    return scene_of(path, title=title, options=cast(RefineOptions, options))
+    scene = scene_of(path, title=title, options=cast(RefineOptions, options))
+    _look_at(scene.layers[0], "mesh" if isinstance(source, TriMesh) else str(source), progress)
+    return scene
+
+
+def _look_at(layer: Layer, name: str, progress: Progress) -> None:
+    """Of a control mesh, built now or long ago: tell that it is inside out, refuse what does not fit."""
+    if layer.refinement is None:
+        return
+    cage, scheme = read_cage(layer.path), layer.refinement.scheme
+    if cage.sharp is not None and scheme != "sqrt3":
+        raise FovealError(
+            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or build it anew by "
+            f"{scheme}, which leaves them out."
+        )
+    tell_inside_out(cage.mesh, name, progress)
 
 
 def prepare(

@@ -1,10 +1,12 @@
 """A control mesh refined for a view, or everywhere, as a mesh."""
 
+import dataclasses
 import os
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import Unpack
+
+import numpy as np
+from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
@@ -15,15 +17,16 @@ from foveal.view.camera import Camera
 from .build import Source, checked, up_of
 from .cage_file import ControlMesh, is_cage, read_cage
 from .export import refuse_mesh_output, write_mesh
+from .facing import tell_inside_out
 from .prepare import refuse_shaping
 from .read import read
-from .refinement import Refinement, RefineOptions, chosen
+from .refine_size import everywhere as everywhere_count
+from .refine_size import most_triangles
+from .refined import filtered, refined
+from .refinement import RefineOptions, chosen
 from .render import home, read_camera
 
-if TYPE_CHECKING:
-    from foveal.refine import Update
-
-__all__ = ["refine", "refined"]
+__all__ = ["refine"]
 
 
 def refine(
@@ -34,6 +37,7 @@ def refine(
     camera: Camera | PathLike | None = None,
     everywhere: bool = False,
     visible_only: bool = False,
+    mode: str = "exact",
     up: str | None = None,
     progress: Progress = SILENT,
     **options: Unpack[RefineOptions],
@@ -54,10 +58,13 @@ def refine(
         Refine uniformly instead, as often as the criteria's front faces.
     visible_only : bool
         Refine front faces that are behind others as those that face away; for √3.
+    mode : "exact" or "filter"
+        "filter" is √3 as the paper has it, `foveal.refine.Sqrt3Filter`, to compare with: for a camera,
+        without sharp edges. A budget ends it where it would be passed, and turns no threshold.
     up : "x", "y" or "z", optional
         Of a mesh, the axis that points up, where it is not the format's own.
     progress : Progress
-        Told that it is done.
+        Told how far it is.
     **options
         See `RefineOptions`. By default what the file says; of any other mesh √3 with the default criteria.
 
@@ -69,7 +76,8 @@ def refine(
     Raises
     ------
     FovealError
-        If the source is no oriented surface, or a file cannot be read or written.
+        If the source is no oriented surface, a file cannot be read or written, or there would be more
+        triangles than memory holds, or than 50 million.
 
     Examples
     --------
@@ -78,58 +86,29 @@ def refine(
     >>> len(refine(icosphere(0), everywhere=True, criteria=Criteria(Region(2))).faces)
     180
     """
+    if mode not in ("exact", "filter"):
+        raise ValueError(f"mode must be exact or filter, got {mode!r}")
     source = checked(source)
     if output is not None:
         refuse_mesh_output(Path(output), source)
-    with progress.stage("Refining", 1) as stage:
-        cage = _cage(source, up, options)
-        name = "mesh" if isinstance(source, TriMesh) else str(source)
-        if isinstance(camera, (str, os.PathLike)):
-            camera = read_camera(camera)
-        if everywhere:
-            mesh = _everywhere(cage, name)
-        else:
-            eye = camera or home([cage.mesh.positions], up=cage.up)
-            mesh = refined(cage.mesh, cage.refinement, eye, has_hidden=not visible_only, name=name)
-        stage.advance(1)
+    name = "mesh" if isinstance(source, TriMesh) else str(source)
+    if isinstance(camera, (str, os.PathLike)):
+        camera = read_camera(camera)
+    cage = _cage(source, up, options)
+    tell_inside_out(cage.mesh, name, progress)
+    if mode == "filter" and (everywhere or visible_only):
+        what = "everywhere" if everywhere else "visible_only"
+        raise FovealError(f"{name}: the mode filter knows no {what}. Choose the mode exact.")
+    if everywhere:
+        cage = _everywhere(cage, name)
+    eye = camera or home([cage.mesh.positions], up=cage.up)
+    if mode == "filter":
+        mesh = filtered(cage, eye, name=name, progress=progress)
+    else:
+        mesh = refined(cage, eye, has_hidden=not visible_only, name=name, progress=progress)
     if output is not None:
         write_mesh(mesh, Path(output), cage.up)
     return mesh
-
-
-def refined(
-    mesh: TriMesh,
-    refinement: Refinement,
-    camera: Camera,
-    /,
-    *,
-    has_hidden: bool = True,
-    name: str = "mesh",
-) -> TriMesh:
-    """A control mesh refined for one view, within its budget, with or without front faces that are hidden."""
-    from foveal.refine import Sqrt3
-    from foveal.refine.hidden import Hidden
-    from foveal.refine.pace import update_within
-    from foveal.refine.scheme import refiner
-
-    live = refiner(mesh, scheme=refinement.scheme, name=name)
-    update: Callable[..., Update] = partial(live.update, camera)
-
-    def within(**options: Any) -> None:
-        update_within(
-            lambda criteria: update(criteria=criteria, **options).faces,
-            refinement.criteria,
-            least=len(mesh.faces),
-            budget=refinement.budget,
-        )
-
-    within()
-    if has_hidden:
-        return live.mesh(positions=refinement.positions)
-    if not isinstance(live, Sqrt3):
-        raise FovealError(f"{name}: what is hidden can be left out by sqrt3 only. Choose that.")
-    within(hidden=Hidden.behind(live.mesh(), camera))
-    return live.mesh(positions=refinement.positions)
 
 
 def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> ControlMesh:
@@ -143,17 +122,42 @@ def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> Con
         if is_cage(source):
             refuse_shaping(source, {"up": up}, is_refined=True)
             cage = read_cage(source)
-            return ControlMesh(cage.mesh, cage.refinement.chosen(options), cage.up)
+            own = cage.refinement.chosen(options)
+            return ControlMesh(cage.mesh, own, cage.up, _sharp(cage.mesh, options, cage.sharp))
     refinement = chosen({**options, "scheme": options.get("scheme") or "sqrt3"})
     assert refinement is not None
     mesh = source if isinstance(source, TriMesh) else read(source)
-    return ControlMesh(weld(mesh)[0], refinement, up_of({"up": up}))
+    welded = weld(mesh)[0]
+    return ControlMesh(welded, refinement, up_of({"up": up}), _sharp(welded, options, None))
 
 
-def _everywhere(cage: ControlMesh, name: str) -> TriMesh:
-    """Uniform refinement: of all that a camera sees which sees all."""
+def _sharp(mesh: TriMesh, options: RefineOptions, own: NDArray[np.int32] | None) -> NDArray[np.int32] | None:
+    """The edges that stay sharp: by the angle that was chosen, or the file's own."""
+    from foveal.refine import sharp_edges
+
+    angle = options.get("sharp_edges")
+    return own if angle is None else sharp_edges(mesh, angle)
+
+
+def _everywhere(cage: ControlMesh, name: str) -> ControlMesh:
+    """To be refined uniformly: all, for a camera that sees all.
+
+    Raises
+    ------
+    FovealError
+        If that is too much, which is known before.
+    """
     from foveal.refine import Criteria, Region
 
-    region = Region(cage.refinement.criteria.front.iterations)
-    refinement = cage.refinement.chosen({"criteria": Criteria(region, region, region)})
-    return refined(cage.mesh, refinement, home([cage.mesh.positions], up=cage.up), name=name)
+    refinement = cage.refinement
+    iterations = refinement.criteria.front.iterations
+    count = everywhere_count(len(cage.mesh.faces), refinement.scheme, iterations)
+    most = most_triangles(refinement.scheme)
+    if count > most and not refinement.budget:
+        raise FovealError(
+            f"{name}: {iterations} iterations everywhere are {count:,} triangles, more than the {most:,} "
+            "that would do here. Give a --budget, fewer --iterations, or a camera in place of --everywhere."
+        )
+    region = Region(iterations)
+    uniform = refinement.chosen({"criteria": Criteria(region, region, region)})
+    return dataclasses.replace(cage, refinement=uniform)

@@ -1,6 +1,7 @@
 """How a control mesh is refined: its scheme, criteria and limits, chosen in Python and kept in JSON."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
@@ -22,21 +23,26 @@ class RefineOptions(TypedDict, total=False):
     scheme : "sqrt3", "loop" or "butterfly"
         Makes a control mesh of a mesh: √3 subdivision, or RGB triangulations over the rules of Loop or of
         the modified butterfly.
-    criteria : Criteria
-        When a triangle is fine enough, apart for front faces, silhouettes and back faces.
+    criteria : Criteria or mapping
+        When a triangle is fine enough, apart for front faces, silhouettes and back faces. A mapping such as
+        {"front": {"edge_px": 2.0}} leaves all else as it is.
     positions : "control" or "limit"
         Where vertices are shown.
     budget : int
         Triangles at most; 0 for no limit.
     rate : float
         Frames a second that the viewer is to hold; 0 for no such wish.
+    sharp_edges : float
+        Keep the edges sharp at which the control mesh bends by more than this angle, in radians, from 0 to
+        pi; for √3. A `.fov` has them, a scene does not say.
     """
 
     scheme: str | None
-    criteria: "Criteria | None"
+    criteria: "Criteria | Mapping[str, Mapping[str, float]] | None"
     positions: str | None
     budget: int | None
     rate: float | None
+    sharp_edges: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +78,19 @@ class Refinement:
 
     def chosen(self, options: RefineOptions, /) -> "Refinement":
         """The same with what was chosen anew."""
-        names = RefineOptions.__annotations__
+        names = self.__dataclass_fields__
         new: dict[str, Any] = {
             key: value for key, value in options.items() if key in names and value is not None
         }
+        if isinstance(new.get("criteria"), Mapping):
+            new["criteria"] = _changed(self.criteria, new["criteria"])
         return replace(self, **new)
+
+
+def _changed(criteria: "Criteria", given: Mapping[str, Mapping[str, float]]) -> "Criteria":
+    """Criteria with some numbers in place of their own."""
+    regions = {name: replace(getattr(criteria, name), **values) for name, values in given.items()}
+    return replace(criteria, **regions)
 
 
 def chosen(options: RefineOptions, /) -> Refinement | None:
@@ -85,10 +99,14 @@ def chosen(options: RefineOptions, /) -> Refinement | None:
     Raises
     ------
     FovealError
-        If they choose how to refine and no scheme.
+        If they choose how to refine and no scheme, or sharp edges that the scheme does not know.
     """
-    scheme = options.get("scheme")
+    scheme, sharp = options.get("scheme"), options.get("sharp_edges")
     if scheme is not None:
+        if sharp is not None and not 0 <= sharp <= math.pi:
+            raise ValueError(f"sharp_edges must be an angle from 0 to pi, got {sharp}")
+        if sharp is not None and scheme in SCHEMES and scheme != "sqrt3":
+            raise FovealError(f"{scheme} knows no sharp edges. Choose sqrt3, or leave sharp_edges out.")
         from foveal.refine import Criteria
 
         return Refinement(cast(Any, scheme), Criteria()).chosen(options)

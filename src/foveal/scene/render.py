@@ -166,13 +166,15 @@ def draw(
     from foveal import multires
     from foveal.lod.select import cut
 
-    from .refine import refined
+    from .refined import refined
 
     meshes = []
     for layer in _visible(scene):
         if layer.refinement is not None:
-            refinement = layer.refinement.chosen({"budget": triangles})
-            meshes.append(refined(read_cage(layer.path).mesh, refinement, camera, name=str(layer.path)))
+            cage = dataclasses.replace(
+                read_cage(layer.path), refinement=layer.refinement.chosen({"budget": triangles})
+            )
+            meshes.append(refined(cage, camera, name=str(layer.path), progress=progress))
             continue
         with multires.open(layer.path) as asset:
             seen = cut(

@@ -123,7 +123,8 @@ def _session(layer: Layer) -> "Session":
     from foveal.scene.cage_file import read_cage
 
     assert layer.refinement is not None
-    return Session(read_cage(layer.path).mesh, scheme=layer.refinement.scheme, name=layer.path.name)
+    cage = read_cage(layer.path)
+    return Session(cage.mesh, scheme=layer.refinement.scheme, sharp=cage.sharp, name=layer.path.name)
 
 
 async def _listen(socket: WebSocket, session: "Session", asked: asyncio.Event) -> None:

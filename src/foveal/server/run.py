@@ -12,10 +12,12 @@ import uvicorn
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike
+from foveal.base.progress import SILENT, Progress
 from foveal.scene import Scene
 
 from .app import create_app
 from .guard import LOCAL_HOSTS
+from .warm import warm
 
 __all__ = ["FIRST_PORT", "Running", "can_open_browser", "refuse_address", "start"]
 
@@ -121,8 +123,11 @@ def start(
     host: str = "127.0.0.1",
     port: int | None = None,
     viewer: PathLike | None = None,
+    progress: Progress = SILENT,
 ) -> Running:
-    """Serve `scene` in a thread and return at once, when requests are answered.
+    """Serve `scene` in a thread and return when requests are answered.
+
+    That is at once, but for control meshes: their kernels are compiled first, 40 s once for a scheme.
 
     Parameters
     ----------
@@ -134,16 +139,19 @@ def start(
         Port to bind, by default 8000; if it is taken the next free one. 0 lets the system choose.
     viewer
         A folder with a built viewer; by default the one that comes with foveal.
+    progress : Progress
+        Told of what takes long.
 
     Raises
     ------
     FovealError
-        If the viewer is not built or no port can be had.
+        If the viewer is not built, no port can be had, or a control mesh is no surface.
     """
     host = host.strip("[]")
     name = f"[{host}]" if ":" in host else host
     is_public = host in _EVERYWHERE
     hosts = {*LOCAL_HOSTS, name.lower(), *({socket.gethostname().lower()} if is_public else ())}
+    warm(scene, progress=progress)
     app = create_app(scene, viewer=viewer, hosts=hosts, is_public=is_public)
     listener = _listen(host, port)
     config = uvicorn.Config(

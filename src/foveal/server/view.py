@@ -69,28 +69,9 @@ def view(
     viewer_files(viewer)  # if it is missing, say so before minutes of building; so for the address
     refuse_address(host, port)
     scene = load(source, progress=progress, **options)
-    _warm(scene, progress)
-    running = start(scene, host=host, port=port, viewer=viewer)
+    running = start(scene, host=host, port=port, viewer=viewer, progress=progress)
     if open_browser is None:
         open_browser = "ipykernel" not in sys.modules and can_open_browser()
     if open_browser:  # apart, as browsers of text do not return before they are closed
         threading.Thread(target=webbrowser.open, args=(running.url,), daemon=True).start()
     return running
-
-
-def _warm(scene: Scene, progress: Progress) -> None:
-    """Have the kernels of live sessions ready, and broken control meshes refused, before any page is."""
-    layers = {layer.path: layer.refinement for layer in scene.layers if layer.refinement is not None}
-    if not layers:
-        return
-    from foveal.refine.session import Session, warm
-    from foveal.scene.cage_file import read_cage
-
-    schemes = {refinement.scheme for refinement in layers.values()}
-    with progress.stage("Preparing refinement", len(layers) + len(schemes)) as stage:
-        for path, refinement in layers.items():
-            Session(read_cage(path).mesh, scheme=refinement.scheme, name=str(path))
-            stage.advance()
-        for scheme in schemes:
-            warm(scheme)
-            stage.advance()

@@ -45,6 +45,13 @@ describe("a control mesh's header", () => {
     expect(info.origin).toEqual(columns.map((c) => 0.5 * Math.min(...c) + 0.5 * Math.max(...c)));
   });
 
+  it("has its sharp edges, which are pairs of vertices", () => {
+    expect(parseCage({ ...HEADER, sharp_edges: [0, 1, 3, 2] }, "a.fov").sharpEdges).toEqual([0, 1, 3, 2]);
+    for (const wrong of [[0], [0, 4], [-1, 0], [0, 1.5], "01", null, [[0, 1]]]) {
+      expect(() => parseCage({ ...HEADER, sharp_edges: wrong }, "a.fov")).toThrow("a.fov");
+    }
+  });
+
   it("is read", () => {
     const { refinement, ...rest } = parseCage(HEADER, "a.fov");
     expect(rest).toEqual({
@@ -53,6 +60,7 @@ describe("a control mesh's header", () => {
       up: "z",
       triangles: 4,
       vertices: 4,
+      sharpEdges: [],
     });
     expect(refinement).toMatchObject({ scheme: "loop", positions: "limit", budget: 1000, rate: 25 });
     expect(refinement.criteria.front).toEqual({ iterations: 3, edge_px: 5, bend: Math.PI / 2 });

@@ -45,6 +45,8 @@ export interface CageInfo {
   readonly up: Axis;
   readonly triangles: number;
   readonly vertices: number;
+  /** Two vertices each of the edges that stay sharp. */
+  readonly sharpEdges: readonly number[];
   readonly refinement: Refinement;
 }
 
@@ -68,15 +70,17 @@ export function parseCage(header: Header, name: string): CageInfo {
       `${name} has version ${String(header.version)} of kind "${CAGE}"; this viewer knows version ${VERSION}. Update foveal, or build the file again.`,
     );
   }
-  const { origin, box, up, triangles, vertices } = header;
+  const { origin, box, up, triangles, vertices, sharp_edges: sharpEdges = [] } = header;
   const isBox = Array.isArray(box) && box.length === 2 && box.every(isTriple);
   if (!isTriple(origin) || !isBox || !isCount(triangles) || !isCount(vertices)) throw damaged(name);
+  if (!areEdges(sharpEdges, vertices)) throw damaged(name);
   return {
     origin,
     box: box as unknown as [Triple, Triple],
     up: up === "x" || up === "z" ? up : "y",
     triangles,
     vertices,
+    sharpEdges,
     refinement: refinementOf(header, name),
   };
 }
@@ -129,6 +133,11 @@ function isObject(value: unknown): value is Record<string, unknown> {
 
 function isCount(value: unknown): value is number {
   return Number.isInteger(value) && (value as number) >= 1;
+}
+
+function areEdges(value: unknown, vertices: number): value is number[] {
+  const isVertex = (v: unknown) => Number.isInteger(v) && (v as number) >= 0 && (v as number) < vertices;
+  return Array.isArray(value) && value.length % 2 === 0 && value.every(isVertex);
 }
 
 function isTriple(value: unknown): value is Triple {

@@ -6,7 +6,7 @@
  * @module refine/base
  */
 import { setNormal } from "./measure";
-import { BORDER, INSIDE, LIMIT, Net, NONE, POINT, THIRD_VECTOR } from "./net";
+import { BORDER, CORNER, INSIDE, LIMIT, Net, NONE, POINT, THIRD_VECTOR } from "./net";
 import type { Surface } from "./surface";
 import { turn } from "./turn";
 
@@ -26,19 +26,24 @@ export function netOf(surface: Surface): Net {
   net.beside.set(beside);
   net.triples.fill(NONE, 0, 3 * count);
   net.pairs.fill(NONE, 0, count);
+  net.twins.set(surface.twins);
   for (let i = 0; i < faces.length; i++) net.around[faces[i]!] = Math.floor(i / 3);
   for (let v = 0; v < count; v++) {
     for (let k = 0; k < 3; k++) {
       net.points[POINT * v + k] = net.points[POINT * v + LIMIT + k] = positions[3 * v + k]!;
     }
     if (surface.starts[v] === surface.starts[v + 1]) continue;
-    if (surface.isBorder[v]) borderVertex(net, surface, v);
-    else innerVertex(net, surface, v);
+    if (!surface.isBorder[v]) innerVertex(net, surface, v);
+    else {
+      if (surface.isCorner[v]) net.kinds[v] = CORNER;
+      else borderVertex(net, surface, v);
+      fanNormal(net, surface, v);
+    }
   }
   return net;
 }
 
-/** Its neighbours on the border, and a fan's mean normal: the limit's tangent across the border is not known. */
+/** Its neighbours on the border, as vectors. */
 function borderVertex(net: Net, { positions, starts, ring }: Surface, v: number): void {
   const begin = starts[v]!;
   const end = starts[v + 1]!;
@@ -51,6 +56,12 @@ function borderVertex(net: Net, { positions, starts, ring }: Surface, v: number)
     net.points[POINT * v + LIMIT + k] = after - before;
     net.points[POINT * v + THIRD_VECTOR + k] = before + after - 2 * positions[3 * v + k]!;
   }
+}
+
+/** A fan's mean normal: the limit's tangent across the border is not known. */
+function fanNormal(net: Net, { positions, starts, ring }: Surface, v: number): void {
+  const begin = starts[v]!;
+  const end = starts[v + 1]!;
   let x = 0;
   let y = 0;
   let z = 0;

@@ -19,11 +19,14 @@ export async function readControlMesh(file: OpenFile, info: CageInfo): Promise<C
 }
 
 /** Positions as doubles, then faces; null where they do not hold together. */
-export function controlMeshOf(chunk: Uint8Array, { vertices, triangles }: CageInfo): ControlMesh | null {
+export function controlMeshOf(
+  chunk: Uint8Array,
+  { vertices, triangles, sharpEdges }: CageInfo,
+): ControlMesh | null {
   if (chunk.length !== VERTEX_BYTES * vertices + FACE_BYTES * triangles) return null;
   const { buffer } = chunk.slice();
   const positions = new Float64Array(buffer, 0, 3 * vertices);
   const faces = new Int32Array(buffer, VERTEX_BYTES * vertices);
   const isSound = positions.every(Number.isFinite) && faces.every((v) => v >= 0 && v < vertices);
-  return isSound ? { positions, faces } : null;
+  return isSound ? { positions, faces, sharp: Int32Array.from(sharpEdges) } : null;
 }

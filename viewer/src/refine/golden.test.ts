@@ -1,6 +1,7 @@
 /** Refinements of small control meshes: the same triangles as Python's, to the last bit. */
 import { createHash } from "node:crypto";
 import { describe, expect, test } from "vitest";
+import sharpText from "../../../spec/golden/sharp.json?raw";
 import text from "../../../spec/golden/sqrt3.json?raw";
 import type { Criteria } from "../format/cage";
 import type { WireCamera } from "../stream/refinement";
@@ -22,11 +23,23 @@ interface Step {
   readonly rows?: number[][];
 }
 
+interface GoldenCage {
+  readonly positions: number[];
+  readonly faces: number[];
+  /** Pairs of vertices, of those with sharp edges. */
+  readonly sharp?: number[];
+}
+
+interface Walk {
+  readonly cage: string;
+  readonly steps: readonly Step[];
+}
+
 interface Golden {
   readonly turns: [i: number, n: number, cosine: number, sine: number][];
-  readonly cages: Record<string, { positions: number[]; faces: number[] }>;
+  readonly cages: Record<string, GoldenCage>;
   readonly criteria: Record<string, Criteria & { limits: number[] }>;
-  readonly walks: { readonly cage: string; readonly steps: Step[] }[];
+  readonly walks: readonly Walk[];
   readonly coarsest: number;
   readonly searches: { readonly edge_px: number; readonly views: readonly SearchedView[] }[];
 }
@@ -43,6 +56,7 @@ interface SearchedView {
 }
 
 const golden: Golden = JSON.parse(text);
+const sharp: Pick<Golden, "cages" | "walks"> = JSON.parse(sharpText);
 const PLACES = ["control", "limit", "starts"] as const;
 
 test.each(golden.turns)("the cosine and sine of %i / %i of a turn", (i, n, cosine, sine) => {
@@ -56,9 +70,12 @@ test.each(Object.entries(golden.criteria))(
   },
 );
 
-function meshOf(name: string) {
-  const { positions, faces } = golden.cages[name]!;
-  return { positions: Float64Array.from(positions), faces: Int32Array.from(faces) };
+function meshOf({ positions, faces, sharp: edges }: GoldenCage) {
+  return {
+    positions: Float64Array.from(positions),
+    faces: Int32Array.from(faces),
+    sharp: edges && Int32Array.from(edges),
+  };
 }
 
 const COLUMNS = 10;
@@ -110,14 +127,23 @@ function expectClose(found: ArrayLike<number>, wanted: ArrayLike<number>): void 
     expect(Math.abs(found[i]! - wanted[i]!)).toBeLessThan(1e-12 * scale);
 }
 
-describe.each(golden.walks)("a walk around $cage", ({ cage, steps }) => {
-  const walking = new Sqrt3(meshOf(cage), cage);
+const walks = [golden, sharp].flatMap(({ cages, walks: some }) =>
+  some.map(({ cage, steps }) => ({
+    cage,
+    steps,
+    mesh: meshOf(cages[cage]!),
+    isSharp: cages === sharp.cages,
+  })),
+);
+
+describe.each(walks)("a walk around $cage, sharp: $isSharp", ({ cage, steps, mesh }) => {
+  const walking = new Sqrt3(mesh, cage);
   test.each(steps)("$criteria: $faces faces", (step) => {
     const view = Float64Array.from(step.view);
     const limits = Float64Array.from(golden.criteria[step.criteria]!.limits);
     expectClose(viewOf(step.camera), view);
     for (;;) if (walking.update(view, limits, step.slices ?? Infinity).isDone) break;
-    const fresh = new Sqrt3(meshOf(cage), cage);
+    const fresh = new Sqrt3(mesh, cage);
     const { faces, vertices } = fresh.update(view, limits);
     expect([faces, vertices]).toEqual([step.faces, step.vertices]);
     for (const what of PLACES) {

@@ -72,7 +72,7 @@ function beyond(net: Net, b: number, u: number): number {
     return NONE;
   }
   const c = net.corners[3 * f + 1]!;
-  const isAtBorder = net.beside[3 * f] === NONE && net.corners[3 * f + 2] === b;
+  const isAtBorder = net.beside[3 * f]! < 0 && net.corners[3 * f + 2] === b;
   if (isAtBorder && net.births[c] !== level) return c;
   for (let k = 0; k < 3; k++) ITEM[k] = net.points[POINT * c + k]!;
   return NONE;

@@ -7,6 +7,8 @@
  *   beyond is not split; its corner 2 is the new vertex.
  * - A vertex has three vectors, `born`, `limit` and `third`, which say where it is on every level (`points.ts`); the
  *   corners of the face in which it was born; the other vertex born in the same border edge; one of its faces.
+ * - A seam is a sharp edge, along which the mesh is cut open: each side has vertices of its own, and the rules of a
+ *   border. `beside` is negative at both: NONE at a border, at a seam which edge of which face is beyond.
  * - Slots are reused, so that what did not change stays where it is. No edges, no hierarchy.
  *
  * The same as `src/foveal/refine/net.py` and `_kernels_sqrt3_layout.py`, one array a field: a typed array has no
@@ -25,6 +27,7 @@ export const INSIDE = 0;
 export const LATE = 1;
 export const BORDER = 2;
 export const UNMEASURED = 3;
+export const CORNER = 4;
 
 /**
  * Flags of vertices: its birth face is to be split for itself; for finer ones; it meets the criteria; and which
@@ -43,6 +46,16 @@ export const MAX_LEVEL = 30;
 export const POINT = 9;
 export const LIMIT = 3;
 export const THIRD_VECTOR = 6;
+
+/** What is beside a face at a seam beyond which is edge k of face f. */
+export function seam(f: number, k: number): number {
+  return -2 - (3 * f + k);
+}
+
+/** The half-edge beyond a seam, 3 f + k. */
+export function beyondSeam(word: number): number {
+  return -2 - word;
+}
 
 /** State of a face of a generation; of a half one more. Shifted back it is the generation. */
 export function whole(level: number): number {
@@ -73,6 +86,8 @@ export class Net {
   /** Of a free slot the first is the next free one. */
   triples: Int32Array;
   pairs: Int32Array;
+  /** The vertex at the same place beyond a seam, or NONE. */
+  twins: Int32Array;
   around: Int32Array;
   /** Up to which drift it is known whether a vertex's birth face meets the criteria. */
   vertexUntil: Float32Array;
@@ -106,6 +121,7 @@ export class Net {
     this.points = new Float64Array(POINT * vertices);
     this.triples = new Int32Array(3 * vertices);
     this.pairs = new Int32Array(vertices);
+    this.twins = new Int32Array(vertices);
     this.around = new Int32Array(vertices);
     this.vertexUntil = new Float32Array(vertices);
     this.kinds = new Uint8Array(vertices);
@@ -138,6 +154,7 @@ export class Net {
     this.points = copied(this.points, new Float64Array(POINT * vertices));
     this.triples = copied(this.triples, new Int32Array(3 * vertices));
     this.pairs = copied(this.pairs, new Int32Array(vertices));
+    this.twins = copied(this.twins, new Int32Array(vertices));
     this.around = copied(this.around, new Int32Array(vertices));
     this.vertexUntil = copied(this.vertexUntil, new Float32Array(vertices));
     this.kinds = copied(this.kinds, new Uint8Array(vertices));

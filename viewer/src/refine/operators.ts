@@ -10,6 +10,7 @@
 import { measureCorners } from "./measure";
 import {
   BORDER,
+  beyondSeam,
   generation,
   half,
   LIMIT,
@@ -22,7 +23,7 @@ import {
   whole,
 } from "./net";
 import { middle, nearPoint, position } from "./points";
-import { put, relink, setState, takeFace, takeVertex } from "./slots";
+import { put, relink, setState, sew, takeFace, takeVertex } from "./slots";
 
 /**
  * Two halves of one old edge (w, x) become two faces of the next generation: half h = (w, x, b) becomes (w, c, b),
@@ -53,7 +54,7 @@ function flip(net: Net, h: number, n: number): void {
 function settle(net: Net, h: number): void {
   const n = net.beside[3 * h]!;
   const state = net.states[h]!;
-  if (n === NONE) setState(net, h, state + 1);
+  if (n < 0) setState(net, h, state + 1);
   else if (net.states[n] === state && net.beside[3 * n] === h) flip(net, h, n);
 }
 
@@ -75,17 +76,22 @@ function born(net: Net, a: number, b: number, c: number, pair: number, level: nu
   net.triples[3 * v + 1] = b;
   net.triples[3 * v + 2] = c;
   net.pairs[v] = pair;
+  net.twins[v] = NONE;
   net.kinds[v] = kind;
   net.births[v] = level + 1;
   net.flags[v] = parents(net, a, b, c, level);
   return v;
 }
 
-/** Split a face of generation k; returns the new vertex, or the first of two on a border. */
+/** Split a face of generation k that is not to be cut at a seam; returns the new vertex, or the first of two. */
 export function split(net: Net, f: number): number {
   const { corners, beside, around } = net;
   const level = generation(net.states[f]!);
-  if (level % 2 === 1 && beside[3 * f] === NONE) return cut(net, f);
+  if (level % 2 === 1 && beside[3 * f]! < 0) {
+    const p = cut(net, f);
+    settleCut(net, f);
+    return p;
+  }
   const u = corners[3 * f]!;
   const v = corners[3 * f + 1]!;
   const w = corners[3 * f + 2]!;
@@ -113,10 +119,47 @@ export function split(net: Net, f: number): number {
   return b;
 }
 
+/** The face beyond the seam at which face f is to be cut, or NONE if there is none. */
+export function beyondCut(net: Net, f: number): number {
+  const word = net.beside[3 * f]!;
+  return word < NONE && generation(net.states[f]!) % 2 === 1 ? Math.floor(beyondSeam(word) / 3) : NONE;
+}
+
+/** Split the two faces of an odd generation at a seam; returns the first new vertex of f. */
+export function cutSeam(net: Net, f: number, n: number): number {
+  const { pairs, twins, beside } = net;
+  const p = cut(net, f);
+  const r = cut(net, n);
+  const q = pairs[p]!;
+  const s = pairs[r]!;
+  twins[p] = s;
+  twins[s] = p;
+  twins[q] = r;
+  twins[r] = q;
+  sew(net, f, 1, n, 1);
+  sew(net, beside[3 * f]!, 1, beside[3 * n + 2]!, 2);
+  sew(net, beside[3 * f + 2]!, 2, beside[3 * n]!, 1);
+  settleCut(net, f);
+  settleCut(net, n);
+  return p;
+}
+
+/** Settle the halves on both sides of the middle face f of a cut. */
+function settleCut(net: Net, f: number): void {
+  const g = net.beside[3 * f]!;
+  const h = net.beside[3 * f + 2]!;
+  settle(net, g);
+  settle(net, h);
+}
+
 /** The points of a border edge that is cut: its ends, on the next level, with the two new ones between. */
 const LINE = new Float64Array(12);
 
-/** Split a face of odd generation, in three from its border edge; returns the first new vertex. */
+/**
+ * Split a face of odd generation, in three from its border edge; returns the first new vertex.
+ *
+ * What is beyond the three edges on the border is left to be said, and the two halves to be settled.
+ */
 function cut(net: Net, f: number): number {
   const { corners, beside, normals, around } = net;
   const level = generation(net.states[f]!);
@@ -146,8 +189,6 @@ function cut(net: Net, f: number): number {
   around[a] = g;
   around[b] = h;
   around[c] = around[p] = around[q] = f;
-  settle(net, g);
-  settle(net, h);
   return p;
 }
 

@@ -6,7 +6,11 @@
  * - INSIDE: where it was born, its limit;
  * - LATE (born in a face with a border edge; its ring grows on the step after): where it was born, its limit, where
  *   it is one level later;
- * - BORDER: where it was born, next - previous border vertex, previous + next - 2 itself.
+ * - BORDER: where it was born, next - previous border vertex, previous + next - 2 itself;
+ * - CORNER: twice where it stays.
+ *
+ * The two sides of a seam run opposite ways, and are to agree in every bit: what is summed along a border is summed in
+ * an order that does not say which way it runs.
  *
  * All functions write three doubles at `at` of `out`, and allocate nothing. The order of the arithmetic is that of
  * `src/foveal/refine/_kernels_sqrt3_points.py`, so that results agree to the last bit.
@@ -15,7 +19,7 @@
  *
  * @module refine/points
  */
-import { BORDER, generation, isHalf, LATE, LIMIT, type Net, NONE, POINT, THIRD_VECTOR } from "./net";
+import { BORDER, CORNER, generation, isHalf, LATE, LIMIT, type Net, POINT, THIRD_VECTOR } from "./net";
 
 export const THIRD = 1 / 3;
 const NINTH = 1 / 9;
@@ -100,6 +104,11 @@ export function nearPoint(
   const v = isFirst ? a : b;
   position(net, v, level, EDGE, 0);
   position(net, isFirst ? b : a, level, EDGE, 3);
+  if (net.kinds[v] === CORNER) {
+    // as if the edge went straight on beyond it
+    for (let k = 0; k < 3; k++) out[at + k] = (EDGE[k]! + EDGE[k]! + EDGE[3 + k]!) * THIRD;
+    return;
+  }
   borderNeighbour(net, v, level, !isFirst, EDGE, 6);
   for (let k = 0; k < 3; k++) out[at + k] = (EDGE[6 + k]! + 16 * EDGE[k]! + 10 * EDGE[3 + k]!) / 27;
 }
@@ -138,7 +147,7 @@ export function virtualApex(net: Net, h: number, out: Float64Array, at: number):
 function apexInFace(net: Net, h: number, n: number, out: Float64Array, at: number): void {
   const { corners, beside } = net;
   const level = generation(net.states[h]!);
-  if (level % 2 === 0 || beside[3 * n] !== NONE) {
+  if (level % 2 === 0 || beside[3 * n]! >= 0) {
     middle(net, n, level, out, at);
     return;
   }

@@ -178,13 +178,32 @@ test("the control mesh of the golden file is read as it was written, and a damag
   await expect(readControlMesh(fileOf(damaged), info)).rejects.toThrow("cage.fov is damaged");
 });
 
+test("sharp edges of the golden file are read, and one that is no edge is refused", async () => {
+  const folder = new URL("../../../spec/golden/", import.meta.url);
+  const written = JSON.parse(readFileSync(new URL("cage_sharp.json", folder), "utf8"));
+  const bytes = new Uint8Array(readFileSync(new URL("cage_sharp.fov", folder)));
+  const container = parseContainer(bytes, "cage_sharp.fov", bytes.length);
+  const info = parseCage(container.header, "cage_sharp.fov");
+  const file = { source: { head: bytes, name: "cage_sharp.fov" }, container } as unknown as OpenFile;
+  const mesh = await readControlMesh(file, info);
+  expect([...mesh.sharp!]).toEqual(written.sharp.flat());
+  const { twins, isCorner, positions } = surfaceOf(mesh, "cage_sharp.fov");
+  // the tip, where both end, has a vertex on each side of them; so has nothing else, as they end at the border
+  expect(positions.length / 3 - mesh.positions.length / 3).toBe(3);
+  expect([twins.filter((v) => v >= 0).length, isCorner.filter((is) => is === 1).length]).toEqual([2, 4]);
+  const odd = { ...mesh, sharp: Int32Array.of(3, 1) };
+  expect(() => surfaceOf(odd, "odd.fov")).toThrow("the edge between vertices 1 and 3 is to be sharp");
+});
+
 test("a control mesh is read from its bytes, or not at all", () => {
   const { positions, faces } = meshOf("two_triangles");
   const chunk = new Uint8Array(positions.byteLength + faces.byteLength);
   chunk.set(new Uint8Array(positions.buffer));
   chunk.set(new Uint8Array(faces.buffer), positions.byteLength);
-  const info = { vertices: 4, triangles: 2 } as Parameters<typeof controlMeshOf>[1];
-  expect(controlMeshOf(chunk, info)).toEqual({ positions, faces });
+  const info = { vertices: 4, triangles: 2, sharpEdges: [2, 0] } as unknown as Parameters<
+    typeof controlMeshOf
+  >[1];
+  expect(controlMeshOf(chunk, info)).toEqual({ positions, faces, sharp: Int32Array.of(2, 0) });
   for (let length = 0; length < chunk.length; length++) {
     expect(controlMeshOf(chunk.subarray(0, length), info)).toBeNull();
   }

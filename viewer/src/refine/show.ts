@@ -6,7 +6,7 @@
  * @module refine/show
  */
 import { measure } from "./measure";
-import { BORDER, FREE, generation, LIMIT, type Net, POINT, THIRD_VECTOR, UNMEASURED } from "./net";
+import { BORDER, FREE, generation, LIMIT, type Net, NONE, POINT, THIRD_VECTOR, UNMEASURED } from "./net";
 import { position } from "./points";
 
 /** Faces and vertices in slots; what did not change since the last time is where it was. */
@@ -37,7 +37,10 @@ export function showFaces(net: Net): Shown {
   return { faces, levels, highest };
 }
 
-/** Write where vertex v is: on the highest level of its faces, or in the limit. */
+/**
+ * Write where vertex v is: on the highest level of its faces, or in the limit. At a seam of the faces on both sides,
+ * which may have come to different levels.
+ */
 export function showVertex(
   net: Net,
   v: number,
@@ -48,7 +51,10 @@ export function showVertex(
 ): void {
   if (net.births[v] === FREE) for (let k = 0; k < 3; k++) out[at + k] = net.points[POINT * v + k]!;
   else if (isLimit) limit(net, v, out, at);
-  else position(net, v, highest[v]!, out, at);
+  else {
+    const twin = net.twins[v]!;
+    position(net, v, twin === NONE ? highest[v]! : Math.max(highest[v]!, highest[twin]!), out, at);
+  }
 }
 
 /** Where vertex v goes. It is measured if need be: then none of its faces is finer than itself. */

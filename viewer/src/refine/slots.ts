@@ -1,5 +1,5 @@
 /** Slots of a √3 refinement: taking, freeing, writing faces; and the queue of faces to be asked. */
-import { FREE, type Net, NONE } from "./net";
+import { beyondSeam, FREE, type Net, NONE, seam } from "./net";
 
 /** A free face slot. */
 export function takeFace(net: Net): number {
@@ -73,7 +73,23 @@ export function put(
   beside[i] = x;
   beside[i + 1] = y;
   beside[i + 2] = z;
+  if (Math.min(x, y, z) < NONE) tellBeyond(net, f);
   setState(net, f, state);
+}
+
+/** Tell the faces beyond the seams of face f where it is. */
+function tellBeyond(net: Net, f: number): void {
+  const { beside } = net;
+  for (let k = 0; k < 3; k++) {
+    const word = beside[3 * f + k]!;
+    if (word < NONE) beside[beyondSeam(word)] = seam(f, k);
+  }
+}
+
+/** Edge j of face f and edge k of face n are the two sides of a seam. */
+export function sew(net: Net, f: number, j: number, n: number, k: number): void {
+  net.beside[3 * f + j] = seam(n, k);
+  net.beside[3 * n + k] = seam(f, j);
 }
 
 /** Make a face another kind; it is to be asked. */
@@ -83,9 +99,9 @@ export function setState(net: Net, f: number, state: number): void {
   enqueue(net, f);
 }
 
-/** Tell face n that f is beyond its edge that begins at u. */
+/** Tell face n, if it is one, that f is beyond its edge that begins at u. */
 export function relink(net: Net, n: number, u: number, f: number): void {
-  if (n !== NONE) net.beside[3 * n + cornerAt(net, n, u)] = f;
+  if (n >= 0) net.beside[3 * n + cornerAt(net, n, u)] = f;
 }
 
 /** Which corner of face f vertex v is. */

@@ -6,7 +6,7 @@
  * @module refine/undo
  */
 import { isHalf, type Net, NONE, whole } from "./net";
-import { cornerAt, giveFace, giveVertex, put, relink, setState } from "./slots";
+import { cornerAt, giveFace, giveVertex, put, relink, setState, sew } from "./slots";
 
 /** The inverse of a flip, for f = (w, c, b) and n = (x, b, c). */
 function unflip(net: Net, f: number, n: number): void {
@@ -42,9 +42,9 @@ function lastPromoted(net: Net, v: number): number {
   const first = net.around[v]!;
   for (let isBack = 0; isBack < 2; isBack++) {
     let f = first;
-    while (f !== NONE) {
+    while (f >= 0) {
       // The middle face of a cut border edge was none: its edge 1 is on the border.
-      if (net.states[f] === state && !(isFlipped(net, f) && beside[3 * f + 1] === NONE)) return f;
+      if (net.states[f] === state && !(isFlipped(net, f) && beside[3 * f + 1]! < 0)) return f;
       const k = cornerAt(net, f, v);
       f = beside[3 * f + (isBack ? k : (k + 2) % 3)]!;
       if (f === first) return NONE;
@@ -61,14 +61,13 @@ function unflipAll(net: Net, v: number): void {
   }
 }
 
-/** Undo the split that made vertex v (and its pair), none of whose faces is split. */
+/** Undo the split that made vertex v (and those with it), none of whose faces is split. */
 export function unsplit(net: Net, v: number): void {
   const { corners, beside, triples, around } = net;
   unflipAll(net, v);
   const p = net.pairs[v]!;
   if (p !== NONE) {
-    unflipAll(net, p);
-    uncut(net, v, p);
+    uncutAll(net, v, p);
     return;
   }
   const a = triples[3 * v]!;
@@ -90,8 +89,28 @@ export function unsplit(net: Net, v: number): void {
   giveVertex(net, v);
 }
 
-/** Undo the cut of a border edge that made p and q, in either order, their halves being unflipped. */
-function uncut(net: Net, p: number, q: number): void {
+/** Undo the cut of a border edge that made p and q, in either order, and at a seam that beyond. */
+function uncutAll(net: Net, p: number, q: number): void {
+  const t = net.twins[p]!;
+  unflipAll(net, q);
+  if (t === NONE) {
+    uncut(net, p, q);
+    return;
+  }
+  const u = net.pairs[t]!;
+  unflipAll(net, t);
+  unflipAll(net, u);
+  const f = uncut(net, p, q);
+  const n = uncut(net, t, u);
+  sew(net, f, 0, n, 0);
+}
+
+/**
+ * Make the three faces of a cut one again, their halves being unflipped; returns it.
+ *
+ * What is beyond its edge on the border is left to be said.
+ */
+function uncut(net: Net, p: number, q: number): number {
   const { corners, beside, triples, around } = net;
   const a = triples[3 * p]!;
   const b = triples[3 * p + 1]!;
@@ -115,4 +134,5 @@ function uncut(net: Net, p: number, q: number): void {
   giveFace(net, h);
   giveVertex(net, p);
   giveVertex(net, q);
+  return f;
 }
