@@ -57,6 +57,15 @@ export const SCHEME_NAMES = {
   sqrt3: "√3 subdivision",
   loop: "Loop subdivision as an RGB triangulation",
   butterfly: "Modified butterfly subdivision as an RGB triangulation",
+  "catmull-clark": "The Catmull-Clark surface",
+} as const;
+
+/** By which patches get their depth. */
+export const RULE_NAMES = {
+  curvature: "Deeper where the surface bends",
+  backs: "Backs not subdivided",
+  silhouettes: "Silhouettes deeper",
+  size: "By how large they look",
 } as const;
 
 /** Rows of the help page: what to do, with the mouse, by touch, by keys. */

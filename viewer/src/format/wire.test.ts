@@ -97,6 +97,18 @@ describe("a live session's messages", () => {
     expect([...changes.faces]).toEqual([]);
   });
 
+  it("have normals in place of starts, which only a fresh message may change", () => {
+    const slots = new SlotBuffers();
+    slots.apply(parseMessage(freshMessage(SPLIT, 1, { flags: 7 })));
+    expect(slots.hasNormals).toBe(true);
+    slots.apply(parseMessage(nextMessage(SPLIT, SPLIT, 2, { flags: 7 })));
+    expect(() => slots.apply(parseMessage(nextMessage(SPLIT, SPLIT, 3, { flags: 3 })))).toThrow(Gap);
+    expect(slots.hasNormals).toBe(true);
+    slots.apply(parseMessage(freshMessage(SPLIT, 3)));
+    expect(slots.hasNormals).toBe(false);
+    expect(() => parseMessage(freshMessage(SPLIT, 1, { flags: 8 }))).toThrow(/its flags/);
+  });
+
   it("tell faces of which only the level changed", () => {
     const slots = new SlotBuffers();
     slots.apply(parseMessage(freshMessage(SPLIT)));
