@@ -46,6 +46,7 @@ export const WORDS = {
   instructions:
     "Arrow keys turn the model, Shift and arrow keys move it, plus and minus zoom, F shows all of it. H opens help.",
   triangles: "triangles",
+  faces: "faces",
   loadedOf: (bytes: string, all: string) => `${bytes} of ${all}`,
   received: "received",
   error: "error",
