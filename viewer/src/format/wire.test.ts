@@ -48,6 +48,7 @@ describe("the golden session", () => {
         triangles,
         milliseconds,
         threshold,
+        hasNormals: ((head.flags as number) & 4) !== 0,
       });
       slots.apply(message);
       expect([...slots.faces.subarray(0, 3 * slots.faceCount)]).toEqual(faces.flat());
