@@ -69,7 +69,7 @@ class Surface:
 
     def is_settled(self):
         """Nothing will be less sharp than it is now, and all faces are quadrangles."""
-        tags = [*self.creases.values(), *self.sharp.values()]
+        tags = [self.crease(*edge) for edge in self.creases] + [self.corner(v) for v in self.sharp]
         return all(not 0 < s < INFINITE for s in tags) and all(len(face) == 4 for face in self.faces)
 
 

@@ -1,13 +1,11 @@
-"""Slates: limit points and normals as the slow twin and OpenSubdiv have them, and no gaps at any depths."""
+"""Slates: no gaps at any depths, whatever was shown before, moved, or asked for."""
 
-import functools
 import math
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.spatial import KDTree
 
 from foveal.base.errors import FovealError
 from foveal.mesh.poly_shapes import cube, prism, quad_grid, quad_torus
@@ -16,81 +14,6 @@ from foveal.mesh.shapes import icosphere
 from foveal.refine.slates import Slates
 from refine import naive_catmull_clark as twin
 from refine.cages import CAGES, CLOSED, wavy
-from refine.test_catmull_clark_twin import CREASED, PLAIN, control_mesh, level_of, reference
-
-
-def grid_of(depth):
-    """(4^depth, 4, 2): row and column of the corners of a patch's faces in the order of the twin's."""
-    quads = np.array([[(0, 0), (0, 1), (1, 1), (1, 0)]])
-    for _ in range(depth):
-        corner = quads.transpose(1, 0, 2)
-        children = [
-            np.stack([corner[k] + corner[i] for i in (k, (k + 1) % 4, (k + 2) % 4, k - 1)]) for k in range(4)
-        ]
-        quads = np.stack(children).transpose(2, 0, 1, 3).reshape(-1, 4, 2)
-    return quads
-
-
-def blocks_of(surface, depth):
-    """(m 4^depth, 4): the row of each corner of each face of the uniform surface, in the twin's order."""
-    places, size = surface._blocks.places, (1 << depth) + 1
-    assert (places.depths == depth).all()
-    grid = grid_of(depth)
-    return (places.places[:, None, None] + grid[..., 0] * size + grid[..., 1]).reshape(-1, 4)
-
-
-@functools.cache
-def truth(name, depth):
-    """The twin's surface at a depth, limit points and normals."""
-    mesh = CAGES[name]()
-    s = twin.start(mesh)
-    if any(len(face) != 4 for face in s.faces):
-        s = twin.subdivided(s)
-    points, normals = twin.limits(s, depth)
-    for _ in range(depth):
-        s = twin.subdivided(s)
-    return np.array(s.faces), points, normals, s.holes
-
-
-@pytest.mark.parametrize("depth", range(4))
-@pytest.mark.parametrize("name", CAGES)
-def test_limit_points_and_normals_are_those_of_the_slow_twin(name, depth):
-    mesh = CAGES[name]()
-    surface = Slates(mesh)
-    surface._blocks.ensure(
-        np.full(surface.patches, depth, np.int8), np.full(4 * surface.patches, -1, np.int8)
-    )
-    faces, points, normals, _ = truth(name, depth)
-    rows = blocks_of(surface, depth)
-    arrays = surface.arrays()
-    diagonal = np.linalg.norm(np.ptp(mesh.positions, axis=0))
-    assert abs(arrays.positions[rows] - points[faces]).max() <= 1e-14 * diagonal
-    assert abs(arrays.normals[rows].reshape(-1, 3) - normals).max() <= 1e-11
-
-
-@pytest.mark.parametrize("name", PLAIN + CREASED)
-def test_limits_are_those_of_opensubdiv(name):
-    data = reference(name)
-    mesh = control_mesh(data, name)
-    level = level_of(name) - int((np.diff(mesh.starts) != 4).any())
-    surface = Slates(mesh)
-    surface.show(level)
-    arrays = surface.arrays()
-    rows = np.unique(arrays.faces[arrays.faces.any(axis=1)])
-    truth_at, normal = data["limit"].copy(), data["normal"].copy()
-    is_defined = data["normal_defined"].copy() if "normal_defined" in data else np.ones(len(normal), bool)
-    if "dart_idx" in data:
-        dart = data["dart_idx"]
-        truth_at[dart], normal[dart], is_defined[dart] = data["dart_limit"], data["dart_normal"], True
-    is_face = ~data["F_hole"] if "F_hole" in data else np.ones(len(data["F"]), bool)
-    on_surface = np.unique(data["F"][is_face])
-    diagonal = np.linalg.norm(np.ptp(data["V"], axis=0))
-    away, row = KDTree(truth_at[on_surface]).query(arrays.positions[rows])
-    assert away.max() <= 1e-12 * diagonal
-    assert len(np.unique(row)) == len(on_surface)
-    row = on_surface[row]
-    kept = is_defined[row]
-    assert abs(arrays.normals[rows][kept] - normal[row][kept]).max() <= 1e-9
 
 
 def merged_edges(points, faces):
@@ -172,6 +95,24 @@ def test_a_part_that_moves_is_the_same_as_a_fresh_mesh(name):
         fresh = Slates(PolyMesh(positions, *[getattr(mesh, n) for n in mesh.__slots__[1:]]))
         fresh.show(depths)
         np.testing.assert_array_equal(triangles_of(surface), triangles_of(fresh))
+
+
+def test_who_copies_what_changed_has_it_all():
+    mesh, rng = CAGES["creased_torus"](), np.random.default_rng(9)
+    surface = Slates(mesh)
+    copies = np.zeros((20_000, 3)), np.zeros((20_000, 3)), np.zeros((40_000, 3), np.int32)
+    for turn in range(30):
+        positions = mesh.positions * (1 + 0.01 * turn) if turn % 5 == 0 else None
+        surface.show(rng.integers(0, 4, surface.patches), positions=positions)
+        arrays = surface.arrays()
+        rows, faces = surface.changed()
+        for copy, now, parts in zip(copies, arrays[:3], (rows, rows, faces), strict=True):
+            for begin, end in parts:
+                copy[begin:end] = now[begin:end]
+        np.testing.assert_array_equal(copies[2][: len(arrays.faces)], arrays.faces)
+        used = np.unique(arrays.faces)
+        np.testing.assert_array_equal(copies[0][used], arrays.positions[used])
+        np.testing.assert_array_equal(copies[1][used], arrays.normals[used])
 
 
 def test_only_what_is_near_a_moved_vertex_is_computed_anew():

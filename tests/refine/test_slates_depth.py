@@ -232,6 +232,19 @@ def test_a_mirrored_placement_stays_outside_out():
     assert ((mesh.normals * mesh.positions).sum(axis=1) > 0).all()
 
 
+def test_depths_follow_a_mesh_that_moves_in_part():
+    mesh, camera = quad_torus(9, 8), torus_view(30)
+    surface, positions = Slates(mesh), mesh.positions.copy()
+    surface.update(camera)
+    for vertex in (3, 40, 41):
+        positions = positions.copy()
+        positions[vertex] *= 1.3
+        surface.update(camera, positions=positions)
+        fresh = Slates(PolyMesh(positions, mesh.starts, mesh.corners))
+        fresh.update(camera)
+        np.testing.assert_array_equal(depths_of(surface), depths_of(fresh))
+
+
 @pytest.mark.parametrize(("begin", "wish"), [(5_000, 40), (2_000_000, 40), (100_000, 10), (400_000, 90)])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_rate_of_frames_is_met_within_thirty_frames_and_held(begin, wish, seed):

@@ -15,9 +15,9 @@ BACK, FRONT, SILHOUETTE = 0, 1, 2
 
 
 @lean
-def bends(net, work, points, normals, levels, out):
+def bends(net, work, points, normals, chosen, levels, out):
     """out[v, l]: the least cosine between the limit normal at v and those of its faces at level l."""
-    for v in range(len(out)):
+    for v in chosen:
         if net.fans[v] == 0:
             continue
         fill_ring(net, points, v, work.rings[0, 0], 0)
@@ -58,14 +58,14 @@ def curved(cosines, cone, most, out):
 
 
 @lean
-def spheres(net, work, points, out):
+def spheres(net, work, points, chosen, out):
     """out[f]: centre and radius of a ball that holds the limit patch.
 
     It holds all points a step further that the patch is a mean of, which are those of its corners' rings: two
     thirds of the radius that the control mesh's own points would take. The centre is the corners' mean, so
     that a turned mesh has turned balls.
     """
-    for f in range(len(out)):
+    for f in chosen:
         for x in range(3):
             total = 0.0
             for k in range(4):

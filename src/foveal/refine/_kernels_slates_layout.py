@@ -22,3 +22,6 @@ REGULAR, SMOOTH, TAGGED = 0, 1, 2
 
 INFINITE = 10.0
 """A sharpness that does not decrease."""
+
+LIMIT_SHARE = 1.0 / 36.0
+"""Of 16 v + 4 sum e + sum f, the limit point of a vertex of four faces. A product: a division took longer."""

@@ -55,6 +55,7 @@ def move_smooth(net, v, a, i, b, o, share):
     """Add `share` times the smooth rule's point to what `share` leaves of the vertex."""
     faces = net.fans[v]
     f = o + 3 * (1 + faces)
+    kept, part = (faces - 2.0) / faces, 1.0 / (faces * faces)
     for x in range(3):
         if net.kinds[v] == REGULAR:
             e = i + 3 + x
@@ -65,7 +66,7 @@ def move_smooth(net, v, a, i, b, o, share):
         total = 0.0
         for j in range(faces):
             total += a[i + 3 * (1 + j) + x] + b[f + 3 * j + x]
-        point = (faces - 2.0) / faces * a[i + x] + total / (faces * faces)
+        point = kept * a[i + x] + part * total
         b[o + x] = point if share == 1.0 else b[o + x] + share * point
 
 

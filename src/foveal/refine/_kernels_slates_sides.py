@@ -9,7 +9,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_slates_layout import LANES, WORDS
+from ._kernels_slates_layout import LANES, LIMIT_SHARE, WORDS
 
 
 @lean
@@ -62,7 +62,7 @@ def side_rule(a, p, ahead, inside, left, mask):
             mask[6] * (e1 - e3) + mask[7] * inwards,
         )
     return (
-        (16.0 * v + 4.0 * (along + across) + diagonal) / 36.0,
+        (16.0 * v + 4.0 * (along + across) + diagonal) * LIMIT_SHARE,
         4.0 * (e0 - e2) + over,
         4.0 * (e1 - e3) + inwards,
     )

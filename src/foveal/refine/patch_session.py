@@ -12,9 +12,10 @@ from foveal.mesh.polymesh import PolyMesh
 from foveal.view.camera import Camera
 
 from .dialogue import MOST_TRIANGLES, Dialogue, origin_of
-from .slates import SlateArrays, Slates
+from .slates import Slates
 from .slates_depth import Depths
 from .slates_rate import FrameRate
+from .slates_result import SlateArrays
 from .wire import Buffers, Request
 
 __all__ = ["PatchSession", "patch_buffers", "warm_patches"]

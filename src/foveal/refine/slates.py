@@ -5,9 +5,6 @@ Based on: V. Settgast, K. Müller, Chr. Fünfzig, D. Fellner. Adaptive tessellat
 animation. SIGGRAPH 1998 (creases).
 """
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
@@ -20,64 +17,14 @@ from .slates_blocks import Blocks
 from .slates_cage import SlateCage
 from .slates_depth import Depths, Views
 from .slates_mesh import joined
+from .slates_pairs import paired
 from .slates_placements import Placements
+from .slates_result import SlateArrays, Tessellated
 from .slates_shown import Shown
 
-__all__ = ["SlateArrays", "Slates", "Tessellated", "slates"]
+__all__ = ["Slates", "slates"]
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Tessellated:
-    """What an update did.
-
-    Attributes
-    ----------
-    triangles : int
-        Shown now, of all placements.
-    patches : int
-        Whose points were computed.
-    renewed : int
-        Patches of placements whose triangles were written anew.
-    deepest : int
-        The largest depth shown.
-    """
-
-    triangles: int
-    patches: int
-    renewed: int
-    deepest: int
-
-
-class SlateArrays(NamedTuple):
-    """What is shown, where it lies; views of the arrays themselves, good until the next update.
-
-    Attributes
-    ----------
-    positions, normals : (v, 3) float64 or float32
-        Limit points, in the space of the control mesh. Rows stay where they are while their patch does not
-        become deeper. Rows in no triangle mean nothing.
-    faces : (f, 3) int32
-        Triangles of rows, counter-clockwise; (0, 0, 0) where there is none.
-    first, counts : (k, m) int64
-        Rows of `faces` that belong to each patch of each placement.
-    depths : (k, m) int8
-        -1 for holes.
-    patch_faces : (m,) int64
-        Which face of the control mesh a patch is of.
-    columns : list of (v, 3)
-        Attributes by three: colours, then uvs and a column of zeros, those there are.
-    """
-
-    positions: NDArray[Any]
-    normals: NDArray[Any]
-    faces: NDArray[np.int32]
-    first: NDArray[np.int64]
-    counts: NDArray[np.int64]
-    depths: NDArray[np.int8]
-    patch_faces: NDArray[np.int64]
-    columns: list[NDArray[Any]]
 
 
 class Slates:
@@ -94,6 +41,8 @@ class Slates:
     placements : (k, 4, 4) float, optional
         Where the surface stands: matrices from its own space to that of the camera, invertible, the last row
         0 0 0 1. Each placement has its own depths and triangles; all share points and normals.
+    pair_triangles : bool
+        Of a TriMesh: join triangles in pairs first, as `paired` does. Half the patches, on another surface.
     dtype : float64 or float32
         Of positions and normals that come out; all is computed in float64.
     name : str
@@ -122,10 +71,17 @@ class Slates:
         /,
         *,
         placements: ArrayLike | None = None,
+        pair_triangles: bool = False,
         dtype: DTypeLike = np.float64,
         name: str = "mesh",
     ) -> None:
-        polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
+        if isinstance(mesh, TriMesh):
+            triangles = PolyMesh.of_triangles(mesh).checked(name)
+            polygons = paired(mesh) if pair_triangles else triangles
+        elif pair_triangles:
+            raise ValueError("pair_triangles is for a TriMesh")
+        else:
+            polygons = mesh
         self._mesh, self._name = polygons.checked(name), name
         if np.dtype(dtype) not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
@@ -212,14 +168,32 @@ class Slates:
                 raise FovealError(
                     f"{self._name}: positions must be {len(self._mesh.positions)} times three finite numbers."
                 )
-            self._blocks.move(points)
-            self._views.forget()
+            self._views.move(*self._blocks.move(points))
 
     def _show(self, depths: NDArray[np.int8]) -> Tessellated:
         sides = self._shown.along_sides(depths)
         is_elsewhere, patches = self._blocks.ensure(*self._shown.wanted(depths, sides))
         renewed = self._shown.show(depths, sides, self._blocks.places, is_elsewhere)
         return Tessellated(self._shown.triangles, len(patches), len(renewed), int(depths.max(initial=-1)))
+
+    def changed(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Which rows of `arrays` the last update wrote: of positions, normals and columns, and of faces.
+
+        Returns
+        -------
+        (r, 2), (s, 2) int64
+            Ascending ranges, the first row and the one after the last. All other rows are as they were, so
+            that who holds a copy needs these alone.
+
+        Examples
+        --------
+        >>> from foveal.mesh.poly_shapes import cube
+        >>> surface = Slates(cube())
+        >>> _ = surface.show(0)
+        >>> surface.changed()
+        (array([[ 0, 24]]), array([[ 0, 12]]))
+        """
+        return self._blocks.changed(), self._shown.changed()
 
     @property
     def patches(self) -> int:

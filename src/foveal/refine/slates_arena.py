@@ -7,7 +7,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from . import _kernels_slates_arena as kernels
 
-__all__ = ["Arena"]
+__all__ = ["Arena", "ranges"]
 
 Ints = NDArray[np.int64]
 
@@ -59,7 +59,7 @@ class Arena:
         self._heads[-1] = before
 
     def clear(self, column: int, places: Ints, sizes: Ints, used: Ints | None = None, /) -> None:
-        """Make rows of runs zero, from `used` of each on."""
+        """Make rows of runs zero, from `used` of each on, to the end of what was lent."""
         used = np.zeros_like(sizes) if used is None else used
         kernels.clear(sizes, used, places, self.columns[column])
 
@@ -67,6 +67,24 @@ class Arena:
     def bytes_used(self) -> int:
         """Of all columns, and of what is kept about them."""
         return sum(column.nbytes for column in self.columns) + self._nodes.nbytes
+
+
+def ranges(places: Ints, sizes: Ints, /) -> Ints:
+    """(r, 2): runs as first row and the one after the last, ascending, joined where they touch.
+
+    Examples
+    --------
+    >>> ranges(np.array([9, 0, 4]), np.array([1, 4, 2]))
+    array([[ 0,  6],
+           [ 9, 10]])
+    """
+    order = np.argsort(places, kind="stable")
+    order = order[sizes[order] > 0]
+    begins, ends = places[order], np.maximum.accumulate(places[order] + sizes[order])
+    is_first = np.ones(len(order), np.bool_)
+    is_first[1:] = begins[1:] > ends[:-1]
+    last = np.append(np.flatnonzero(is_first)[1:] - 1, len(order) - 1)[: is_first.sum()]
+    return np.stack([begins[is_first], ends[last]], axis=1)
 
 
 def _longer(column: NDArray[Any], rows: int) -> NDArray[Any]:

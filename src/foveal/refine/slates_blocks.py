@@ -14,7 +14,7 @@ from ._kernels_slates import tessellate
 from ._kernels_slates_cage import touched
 from ._kernels_slates_rims import rims
 from ._kernels_slates_vertices import vertex_limits
-from .slates_arena import Arena
+from .slates_arena import Arena, ranges
 from .slates_cage import SlateCage
 from .slates_work import Rows, Work
 
@@ -67,6 +67,7 @@ class Blocks:
         self.corner_normals = np.zeros((normals, 3))
         self._spare = np.zeros((normals, 3)) if len(columns) > 1 else self.corner_normals
         self._is_stale = np.zeros(m, np.bool_)
+        self._written = np.zeros(0, np.int64), np.zeros(0, np.int64)
         self._limits(np.arange(len(self.points[0])))
 
     def _limits(self, vertices: Ints) -> None:
@@ -74,21 +75,28 @@ class Blocks:
             normals = self._spare if i else self.corner_normals
             vertex_limits(self._cage.net, points, vertices, self.corner_points[i], normals)
 
-    def move(self, positions: Floats, /) -> NDArray[np.bool_]:
-        """New positions of the control mesh; (m,) which patches are to be made anew."""
+    def move(self, positions: Floats, /) -> tuple[Ints, Ints]:
+        """New positions of the control mesh; which vertices and patches have such in their rings."""
         net, points = self._cage.net, self._cage.points(positions)
         is_vertex, is_patch = np.empty(len(points), np.bool_), np.empty(len(net.grid), np.bool_)
         touched(net, (points != self.points[0]).any(axis=1), is_vertex, is_patch)
         self.points[0] = points
-        self._limits(np.flatnonzero(is_vertex))
+        vertices = np.flatnonzero(is_vertex)
+        self._limits(vertices)
         self._is_stale |= is_patch
-        return is_patch
+        return vertices, np.flatnonzero(is_patch)
 
     @property
     def rows(self) -> list[NDArray[Any]]:
         """Positions, normals, further columns by three: (rows, 3) each, of all that was ever computed."""
         columns = self._arena.columns
         return [column[: self._arena.rows] for column in (columns[0], columns[-1], *columns[1:-1])]
+
+    def changed(self) -> Ints:
+        """(r, 2): ranges of rows that the last `ensure` wrote."""
+        here, (patches, sides) = self.places, self._written
+        sizes = _rows_of(here.depths[patches]), _points_of(here.rim_depths[sides])
+        return ranges(np.concatenate([here.places[patches], here.rims[sides]]), np.concatenate(sizes))
 
     def ensure(self, depths: NDArray[np.int8], sides: NDArray[np.int8], /) -> tuple[NDArray[np.bool_], Ints]:
         """Blocks and rims as deep as wanted, at least.
@@ -144,6 +152,7 @@ class Blocks:
 
     def _compute(self, patches: Ints, sides: Ints) -> None:
         here, net = self.places, self._cage.net
+        self._written = patches, sides
         depths, rim_depths = here.depths[patches], here.rim_depths[sides].astype(np.int64)
         deepest = max(int(depths.max(initial=0)), int(rim_depths.max(initial=0)))
         if deepest > self._depth:

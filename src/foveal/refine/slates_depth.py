@@ -19,6 +19,7 @@ from .slates_work import Work
 __all__ = ["Depths", "Views"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Levels = NDArray[np.int8]
 
 
@@ -46,8 +47,15 @@ class Depths:
 
     Examples
     --------
-    >>> Depths(most=3, cone=None, backs=False, silhouettes=False, size_px=None)  # depth 3 everywhere
-    Depths(most=3, cone=None, backs=False, silhouettes=False, epsilon=0.1, size_px=None)
+    >>> from foveal.mesh.poly_shapes import cube
+    >>> from foveal.refine import Slates
+    >>> from foveal.view.camera import Camera
+    >>> surface, camera = Slates(cube()), Camera.of([0, 0, 9], [0, 0, 0])
+    >>> surface.update(camera, depths=Depths(cone=None, backs=False, silhouettes=False, size_px=None)).deepest
+    5
+    >>> _ = surface.update(camera, depths=Depths(most=4, size_px=None))
+    >>> surface.arrays().depths  # the face away, the one in front, and those at the silhouette
+    array([[0, 3, 4, 4, 4, 4]], dtype=int8)
     """
 
     most: int = 5
@@ -76,18 +84,29 @@ class Views:
     def __init__(self, cage: SlateCage, blocks: Blocks, /) -> None:
         self._cage, self._blocks = cage, blocks
         self._is_open = bool((cage.net.mates < 0).any())
-        self.forget()
+        self._cosines: Floats | None = None
+        self._curvature: tuple[tuple[float | None, int], Levels] | None = None
+        self._balls: Floats | None = None
 
     @property
     def net(self) -> SlateNet:
         """Of the control mesh."""
         return self._cage.net
 
-    def forget(self) -> None:
-        """The control mesh moved."""
-        self._cosines: Floats | None = None
-        self._curvature: tuple[tuple[float | None, int], Levels] | None = None
-        self._balls: Floats | None = None
+    def move(self, vertices: Ints, patches: Ints, /) -> None:
+        """What has vertices that moved in its rings is asked anew."""
+        self._curvature = None
+        if self._cosines is not None:
+            self._bend(vertices, self._cosines)
+        if self._balls is not None:
+            self._surround(patches, self._balls)
+
+    def _bend(self, vertices: Ints, cosines: Floats) -> None:
+        data = self._blocks.points[0], self._blocks.corner_normals
+        kernels.bends(self.net, Work.of(self.net, 0), *data, vertices, cosines.shape[1], cosines)
+
+    def _surround(self, patches: Ints, balls: Floats) -> None:
+        kernels.spheres(self.net, Work.of(self.net, 0), self._blocks.points[0], patches, balls)
 
     def curvature(self, cone: float | None, most: int, /) -> Levels:
         """(n,): the depth that each vertex needs, by the cone of normals."""
@@ -99,9 +118,7 @@ class Views:
         if cone is not None:
             if self._cosines is None or self._cosines.shape[1] <= most:
                 self._cosines = np.ones((count, most + 1))
-                net, work = self._cage.net, Work.of(self._cage.net, 0)
-                data = self._blocks.points[0], self._blocks.corner_normals
-                kernels.bends(net, work, *data, most + 1, self._cosines)
+                self._bend(np.arange(count), self._cosines)
             kernels.curved(self._cosines, math.cos(cone), most, levels)
         self._curvature = key, levels
         return levels
@@ -111,7 +128,7 @@ class Views:
         net, points = self._cage.net, self._blocks.corner_points[0]
         if self._balls is None:
             self._balls = np.empty((len(net.grid), 4))
-            kernels.spheres(net, Work.of(net, 0), self._blocks.points[0], self._balls)
+            self._surround(np.arange(len(net.grid)), self._balls)
         classes = np.empty((len(placements.matrices), len(points)), np.int8)
         sizes = np.empty((len(placements.matrices), len(net.grid)))
         eyes = placements.inverses[:, :3, :3] @ camera.position + placements.inverses[:, :3, 3]

@@ -1,19 +1,18 @@
 """A tessellation as one mesh."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from foveal.mesh.trimesh import TriMesh
 
-if TYPE_CHECKING:
-    from .slates import SlateArrays
+from .slates_result import SlateArrays
 
 __all__ = ["joined"]
 
 
-def joined(arrays: "SlateArrays", placements: NDArray[np.float64], /, *, has_colours: bool) -> TriMesh:
+def joined(arrays: SlateArrays, placements: NDArray[np.float64], /, *, has_colours: bool) -> TriMesh:
     """The triangles of all placements over shared vertices; see `Slates.mesh`."""
     own, copies = _shared([arrays.positions, arrays.normals, *arrays.columns], arrays.faces)
     points, normals, faces, colours = [], [], [], []

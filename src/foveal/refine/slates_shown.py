@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kernels_slates_show as kernels
-from .slates_arena import Arena
+from .slates_arena import Arena, ranges
 from .slates_blocks import Places
 from .slates_cage import SlateCage
 
@@ -31,6 +31,8 @@ class Shown:
         self.depths, self.sides = np.full(count, -1, np.int8), np.full(4 * count, -1, np.int8)
         self.places, self.counts = np.zeros(count, np.int64), np.zeros(count, np.int64)
         self.triangles = 0
+        none = np.zeros(0, np.int64)
+        self._written = none, none, none, none
 
     @property
     def rows(self) -> NDArray[np.int32]:
@@ -47,6 +49,8 @@ class Shown:
         """What all placements together need of the blocks (m,), and of the rims (4 m,).
 
         A patch beside a deeper one is computed a step deeper than it is shown: hubs and cut edges lie there.
+        A narrow slate for these alone would be linear in them, but have its own places for each depth and
+        placement; a tenth more rows than are shown in a usual view, and half more at worst, were simpler.
         """
         m = len(self._cage.net.grid)
         blocks, rims = np.full(m, -1, np.int8), np.full(4 * m, -1, np.int8)
@@ -66,16 +70,23 @@ class Shown:
         is_other = np.empty(len(depths), np.bool_)
         kernels.compare(depths, self.depths, sides, self.sides, is_elsewhere, is_other)
         chosen = np.flatnonzero(is_other)
+        self._written = chosen, chosen, chosen, chosen
         if len(chosen) == 0:
             return chosen
         self.depths, self.sides = depths, sides
-        old, counts = self.counts[chosen], self.counts
-        self._arena.clear(0, self.places[chosen], old)
-        self._arena.release(self.places[chosen], old)
+        old, before, counts = self.counts[chosen], self.places[chosen], self.counts
+        self._arena.clear(0, before, old)
+        self._arena.release(before, old)
         kernels.triangles_of_each(chosen, depths, sides, counts)
         self.triangles += int(counts[chosen].sum() - old.sum())
         self.places[chosen] = self._arena.allocate(counts[chosen])
         rows = self._arena.columns[0]
         kernels.show(places, chosen, depths, sides, self.places, m, rows)
         self._arena.clear(0, self.places[chosen], counts[chosen], counts[chosen])
+        self._written = before, old, self.places[chosen], counts[chosen]
         return chosen
+
+    def changed(self) -> Ints:
+        """(r, 2): ranges of rows that the last `show` wrote, also to clear them."""
+        before, old, places, counts = self._written
+        return ranges(np.concatenate([before, places]), np.concatenate([old, counts]))
