@@ -44,7 +44,10 @@ TAKES_A_VALUE |= {
     "--silhouette-bend",
     "--budget",
     "--rate",
+    "--radius-px",
+    "--without",
 }
+TAKES_TWO = {"--radius-px"}
 
 
 def call(*command: object, **options: object) -> None:
@@ -103,8 +106,10 @@ def test(arguments: list[str]) -> None:
 
 def view(arguments: list[str]) -> None:
     """Show a file, or the dragon."""
-    pairs = zip(["", *arguments], arguments, strict=False)
-    if all(word.startswith("-") or last in TAKES_A_VALUE for last, word in pairs):
+    words = zip(["", "", *arguments], ["", *arguments], arguments, strict=False)
+    if all(
+        word.startswith("-") or last in TAKES_A_VALUE or before in TAKES_TWO for before, last, word in words
+    ):
         print("The dragon: Stanford 3D Scanning Repository, Stanford University.", file=sys.stderr)
         arguments = [str(DRAGON), *arguments]
     call(SCRIPTS / "foveal", "view", *arguments, cwd=Path.cwd())

@@ -35,6 +35,8 @@ def do():
         (["--no-browser"], True),
         (["--port", "9000", "-q"], True),
         (["--step", "0.1", "--memory", "2GB"], True),
+        (["--radius-px", "2", "9", "--without", "backs"], True),
+        (["--radius-px", "2", "9", "statue.ply"], False),
         (["statue.ply"], False),
         (["--no-browser", "statue.ply"], False),
         (["--port", "9000", "statue.ply"], False),

@@ -21,6 +21,7 @@ HEADS = [
     Head(2, 1, False, False, 51, 0.25, 1.0905077),
     Head(3, 2, True, False, 51, 0.125, 1.0),
     Head(4, 0, True, True, 51, 12.0, 1.0),
+    Head(5, 0, True, True, 51, 0.5, 1.0, has_normals=True),
 ]
 
 
@@ -35,7 +36,7 @@ def slots(rng: np.random.Generator, faces: int, vertices: int, free: int) -> Slo
 
 
 def session() -> list[Slots]:
-    """What the page is to have after each message: all, some and more, nothing, all anew."""
+    """What the page is to have after each message: all, some and more, nothing, all anew, with normals."""
     rng = np.random.default_rng(20)
     first = slots(rng, 41, 27, 3)
     second = slots(rng, 53, 70, 2)
@@ -44,7 +45,9 @@ def session() -> list[Slots]:
     second.faces[38:41] = rng.integers(1, 70, (3, 3))
     second.positions[7] += 0.125
     second.positions[12], second.starts[12] = ORIGIN + 3, ORIGIN + 2.5
-    return [first, second, second, second._replace(positions=second.positions + 0.5)]
+    moved = second._replace(positions=second.positions + 0.5)
+    normals = ORIGIN + np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.0, 0.0, 0.0]])[np.arange(70) % 3]
+    return [first, second, second, moved, moved._replace(starts=normals)]
 
 
 def messages() -> list[bytes]:

@@ -39,11 +39,12 @@ def test_the_golden_session_is_what_a_page_makes_of_it():
 
 def test_the_golden_session_has_what_can_be_got_wrong():
     heads = [case["head"] for case in GOLDEN["messages"]]
-    assert [head["base"] for head in heads] == [0, 1, 2, 0]
+    assert [head["base"] for head in heads] == [0, 1, 2, 0, 0]
     assert heads[0]["faces"] < heads[1]["faces"]  # arrays grow
     assert heads[1]["ranges"] > 4  # more than one range in an array
     assert heads[2]["ranges"] == 0
     assert heads[3]["is_limit"]
+    assert [head["flags"] >> 2 for head in heads] == [0, 0, 0, 0, 1]  # normals
     assert heads[1]["faces"] % 4  # tags have a tail
 
 

@@ -69,7 +69,7 @@ def parse(message):
     names = "sequence base flags faces vertices triangles ranges milliseconds threshold"
     magic, *values = struct.unpack_from("<4s7I2f", message)
     head = dict(zip(names.split(), values, strict=True))
-    if magic != b"FVL\x01" or head["flags"] > 3:
+    if magic != b"FVL\x01" or head["flags"] > 7:
         raise Refused("magic")
     begin = 40 + 12 * head["ranges"]
     ranges = []

@@ -1,4 +1,6 @@
-"""Writes `cage.fov`, `cage.json`, and `cage_sharp` the same, in `spec/golden`: pytest and vitest read them.
+"""Writes `cage.fov`, `cage.json`, the same of `cage_sharp` and `cage_polygons`, in `spec/golden`.
+
+Both pytest and vitest read them.
 
 PYTHONPATH=tests python -m scene.golden_cage
 """
@@ -7,8 +9,11 @@ import json
 import math
 from pathlib import Path
 
+from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 from foveal.refine import Criteria, Region, sharp_edges
+from foveal.refine.depth_words import depths_json
+from foveal.refine.slates_depth import Depths
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import Refinement
 
@@ -37,6 +42,51 @@ ANGLE = 1.5
 """Two of the pyramid's four inner edges bend by more."""
 
 
+POLYGONS = PolyMesh.of(  # a cube whose top is a triangle and a pentagon, creased, and a lone vertex
+    [
+        *([684_300.1, 0.3, 7e-9], [684_301.7, 0.25, 0], [684_301.5, 1.9, -2.5], [684_300, 2, 0.125]),
+        *(
+            [684_300, 0, 4],
+            [684_302, 0, 4],
+            [684_302, 2, 4],
+            [684_300, 2, 4.5],
+            [684_301, 0, 4.25],
+            [0, 0, 0],
+        ),
+    ],
+    [[0, 3, 2, 1], [0, 1, 5, 8, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 8, 7], [8, 5, 6, 7]],
+    creases={(4, 8): 10, (8, 5): 2.5, (1, 0): 0.25, (7, 6): float("inf")},
+    sharp_corners={6: 10, 2: 1.5},
+    boundary="edge_and_corner",
+    colours=[[16 * i, 255 - i, 0.5] for i in range(10)],
+    uvs=[[i / 8, -i] for i in range(10)],
+)
+PATCHES = Refinement(
+    "catmull-clark",
+    Criteria(),
+    "limit",
+    70_000,
+    25.0,
+    Depths(6, math.radians(4), True, False, 0.25, (2.0, 12.5)),
+)
+
+
+def write_polygons() -> None:
+    """A file of polygons."""
+    write_cage(POLYGONS, FOLDER / "cage_polygons.fov", refinement=PATCHES, up="z")
+    fields = [field for field in POLYGONS.__dataclass_fields__ if field != "boundary"]
+    data = {
+        **{field: getattr(POLYGONS, field).tolist() for field in fields},
+        "crease_sharpness": [min(s, 2.0**100) for s in POLYGONS.crease_sharpness.tolist()],  # JSON has no inf
+        "boundary": POLYGONS.boundary,
+        "up": "z",
+        "depths": depths_json(PATCHES.depths),
+        "budget": PATCHES.budget,
+        "rate": PATCHES.rate,
+    }
+    (FOLDER / "cage_polygons.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
+
+
 def write_sharp() -> None:
     """A file with sharp edges."""
     write_cage(MESH, FOLDER / "cage_sharp.fov", refinement=SHARP, sharp_edges=ANGLE)
@@ -48,6 +98,7 @@ def write_sharp() -> None:
 def main() -> None:
     """Write all."""
     write_sharp()
+    write_polygons()
     write_cage(MESH, FOLDER / "cage.fov", refinement=REFINEMENT, up="z")
     regions = {
         name: {"iterations": region.iterations, "edge_px": region.edge_px, "bend": region.bend}

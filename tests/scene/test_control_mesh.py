@@ -163,10 +163,10 @@ def test_a_scene_that_says_it_wrong_is_refused(cage, tmp_path, layer):
 def test_a_version_to_come_is_refused(cage, tmp_path):
     from foveal.container import create
 
-    with create(tmp_path / "new.fov", kind="cage", version=2) as writer:
+    with create(tmp_path / "new.fov", kind="cage", version=3) as writer:
         writer.finish({"generator": "later"}, b"")
     for verb in (scene_of, info, check, read, export, load):
-        with pytest.raises(FovealError, match="cage version 2 is not known"):
+        with pytest.raises(FovealError, match="cage version 3 is not known"):
             verb(tmp_path / "new.fov")
 
 

@@ -45,6 +45,7 @@ def build(
     import foveal
     from foveal.scene.build import title_of
     from foveal.scene.cage_file import CageReport
+    from foveal.scene.cage_polygons import told
 
     output = output or file.with_name(f"{title_of(file)}.fov")
     refuse_output(output, file, ".fov", force=force)
@@ -58,6 +59,8 @@ def build(
         counts = f"{counted(report.triangles, 'triangle')}, {counted(report.vertices, 'vertex', 'vertices')}"
         if report.sharp_edges:
             counts += f", {counted(report.sharp_edges, 'sharp edge')}"
+        if report.polygons is not None:
+            counts = f"{told(report.polygons)}, {counted(report.vertices, 'vertex', 'vertices')}"
         telling.result(facts, f"{output}: a control mesh of {counts}, {report.bytes:,} bytes")
         return
     facts["seconds"] = {"total": seconds, **report.seconds}

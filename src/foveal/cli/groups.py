@@ -26,6 +26,7 @@ from .options import (
     Normals,
     Positions,
     Quiet,
+    RadiusPx,
     Scheme,
     SharpEdges,
     SilhouetteBend,
@@ -34,6 +35,7 @@ from .options import (
     Step,
     Up,
     Verbose,
+    Without,
     Workers,
 )
 from .report import Reporter, reporter
@@ -154,6 +156,8 @@ def refining(
     positions: Positions = None,
     budget: Budget = None,
     sharp_edges: SharpEdges = None,
+    radius_px: RadiusPx = None,
+    without: Without = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
     silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
@@ -166,11 +170,29 @@ def refining(
     }
     return {
         "scheme": scheme and scheme.value,
-        "criteria": criteria if any(criteria.values()) else None,
+        "criteria": {name: region for name, region in criteria.items() if region} or None,
+        "depths": _depths(radius_px, [rule.value for rule in without or ()]),
         "positions": positions and positions.value,
         "budget": budget,
         "sharp_edges": _radians(sharp_edges),
     }
+
+
+def _depths(radius_px: tuple[float, float] | None, without: list[str]) -> dict[str, Any] | None:
+    """What is chosen of the depth rules of patches, or None."""
+    from foveal.scene.depth_rules import RULES
+
+    found = {key: value for rule in without for key, value in RULES[rule].items()}
+    if radius_px is not None:
+        if "size" in without:
+            raise typer.BadParameter("it goes by --without size. Leave one out.", param_hint="--radius-px")
+        if not 2 * radius_px[0] <= radius_px[1]:
+            raise typer.BadParameter(
+                f"the second must be at least twice the first, got {radius_px[0]:g} {radius_px[1]:g}.",
+                param_hint="--radius-px",
+            )
+        found["size_px"] = radius_px
+    return found or None
 
 
 def _radians(degrees: float | None) -> float | None:

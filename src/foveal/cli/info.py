@@ -79,6 +79,8 @@ def _mesh(facts: dict[str, Any]) -> list[str]:
 
 
 def _cage(facts: dict[str, Any]) -> list[str]:
+    if "depths" in facts:
+        return [*_common(facts), *_polygons(facts), *_depths(facts)]
     lines = [*_common(facts), f"  scheme       {facts['scheme']}, {facts['positions']} positions"]
     if facts["sharp_edges"]:
         lines.append(f"  sharp edges  {facts['sharp_edges']:,}")
@@ -86,6 +88,29 @@ def _cage(facts: dict[str, Any]) -> list[str]:
         limits = f"{region['iterations']} iterations, edge {region['edge_px']:g} px"
         lines.append(f"  {name:<12} {limits}, bend {region['bend_degrees']:.4g} degrees")
     return lines
+
+
+def _polygons(facts: dict[str, Any]) -> list[str]:
+    from foveal.scene.cage_polygons import PolygonCounts, told
+
+    if "polygons" not in facts:
+        return []
+    counts = PolygonCounts(**facts["polygons"])
+    return [f"  made of      {told(counts)}", f"  boundary     {counts.boundary.replace('_', ' ')}"]
+
+
+def _depths(facts: dict[str, Any]) -> list[str]:
+    depths = facts["depths"]
+    cone, size = depths["cone_degrees"], depths["size_px"]
+    rules = [
+        "no curvature" if cone is None else f"curvature {cone:.4g} degrees",
+        *(name if depths[name] else f"no {name}" for name in ("backs", "silhouettes")),
+        "no size" if size is None else f"radius {size[0]:g} to {size[1]:g} px",
+    ]
+    return [
+        f"  scheme       {facts['scheme']}, depth {depths['most']} at most",
+        f"  rules        {', '.join(rules)}",
+    ]
 
 
 _LINES = {"scene": _scene, "multires": _fov, "mesh": _mesh, "cage": _cage}

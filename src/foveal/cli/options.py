@@ -25,6 +25,8 @@ __all__ = [
     "Positions",
     "PositionsKind",
     "Quiet",
+    "RadiusPx",
+    "RuleKind",
     "Scheme",
     "SchemeKind",
     "SharpEdges",
@@ -36,6 +38,7 @@ __all__ = [
     "Up",
     "UpAxis",
     "Verbose",
+    "Without",
     "Workers",
     "parse_size",
 ]
@@ -82,6 +85,16 @@ class SchemeKind(enum.StrEnum):
     sqrt3 = "sqrt3"
     loop = "loop"
     butterfly = "butterfly"
+    catmull_clark = "catmull-clark"
+
+
+class RuleKind(enum.StrEnum):
+    """A rule by which patches get their depth."""
+
+    curvature = "curvature"
+    backs = "backs"
+    silhouettes = "silhouettes"
+    size = "size"
 
 
 class ModeKind(enum.StrEnum):
@@ -201,6 +214,22 @@ Budget = Annotated[
     int | None,
     typer.Option(
         min=0, max=2**32 - 1, metavar="N", help="Triangles at most, by a coarser threshold; 0 for no limit."
+    ),
+]
+RadiusPx = Annotated[
+    tuple[float, float] | None,
+    typer.Option(
+        min=0.0,
+        max=1e9,
+        metavar="MIN MAX",
+        help="Radii that subdivided patches may have on the picture; larger is coarser. For catmull-clark.",
+    ),
+]
+Without = Annotated[
+    list[RuleKind] | None,
+    typer.Option(
+        case_sensitive=False,
+        help="Leave out this rule for the depth of patches; may be repeated. For catmull-clark.",
     ),
 ]
 SharpEdges = Annotated[

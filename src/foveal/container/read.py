@@ -93,14 +93,15 @@ class Container:
     def __len__(self) -> int:
         return len(self.lengths)
 
-    def expect(self, kind: str, version: int, /) -> None:
-        """Refuse, in a sentence, a file that is not of this kind and version."""
+    def expect(self, kind: str, /, *versions: int) -> None:
+        """Refuse, in a sentence, a file that is not of this kind and one of these versions."""
         if self.kind != kind:
             raise FovealError(f"{self.name}: it holds {self.kind!r}, where {kind!r} is wanted.")
-        if self.version != version:
+        if self.version not in versions:
+            known = " and ".join(map(str, versions))
             raise FovealError(
                 f"{self.name}: {kind} version {self.version} is not known to this foveal, which reads "
-                f"version {version}. Use the foveal that wrote it, or build the file again."
+                f"version {known}. Use the foveal that wrote it, or build the file again."
             )
 
     def chunk(self, number: int, /) -> bytes:

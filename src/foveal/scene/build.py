@@ -14,6 +14,8 @@ from foveal.base.tasks import Executor
 from foveal.mesh.trimesh import TriMesh
 
 from .cage_file import CageReport, ControlMesh, is_cage, read_cage, write_cage
+from .cage_polygons import PolygonCounts, read_polygons, told
+from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, RefineOptions, chosen
 
 if TYPE_CHECKING:
@@ -82,9 +84,10 @@ def build(
         By default local threads; anything like `concurrent.futures.Executor` serves, such as Dask's.
     workers : int, optional
         Number of local threads; by default one a processor.
-    scheme : "sqrt3", "loop" or "butterfly", optional
-        Keep the mesh as a control mesh, to be refined by this scheme where it is looked at.
-    criteria, positions, budget, rate, sharp_edges
+    scheme : "sqrt3", "loop", "butterfly" or "catmull-clark", optional
+        Keep the mesh as a control mesh, to be refined by this scheme where it is looked at; for
+        catmull-clark its polygons, creases and corners.
+    criteria, depths, positions, budget, rate, sharp_edges
         With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
@@ -154,14 +157,19 @@ def _build_cage(
         # What another scheme was told says little: its iterations are of other triangles.
         is_same = cage.refinement.scheme == refinement.scheme
         cage = replace(cage, refinement=cage.refinement.chosen(options) if is_same else refinement)
+    elif refinement.scheme == CATMULL_CLARK:
+        cage = ControlMesh.of_polygons(read_polygons(mesh, name), refinement, "y")
     else:
         cage = ControlMesh(mesh if isinstance(mesh, TriMesh) else read(mesh), refinement, "y")
+    if cage.polygons is not None and refinement.scheme != CATMULL_CLARK:
+        counts = told(PolygonCounts.of(cage.polygons))
+        progress.note(f"Kept as plain triangles, since {refinement.scheme} knows nothing else: {counts}.")
     sharp, angle = cage.sharp, options.get("sharp_edges")
     if sharp is not None and refinement.scheme != "sqrt3":
         progress.note(f"Sharp edges that are left out, since {refinement.scheme} knows none: {len(sharp):,}.")
         sharp = None
     report = write_cage(
-        cage.mesh,
+        cage.surface() if refinement.scheme == CATMULL_CLARK else cage.mesh,
         output,
         refinement=cage.refinement,
         up=options.get("up") or cage.up,

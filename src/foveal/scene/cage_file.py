@@ -1,8 +1,9 @@
 """The `.fov` of kind "cage": a control mesh, and how it is meant to be refined. See spec/container.md."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,14 +13,17 @@ from foveal.base.files import PathLike
 from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
 
+from .cage_polygons import PolygonCounts, polygons_chunk, polygons_header, polygons_of
+from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, refinement_json, refinement_of
 
 if TYPE_CHECKING:  # which knows of kernels: half a second for those who show patches only
+    from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.trimesh import TriMesh
 
 __all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
-KIND, VERSION = "cage", 1
+KIND, VERSION, POLYGONS_VERSION = "cage", 1, 2
 _MOST_SHARP = 500_000  # their list is part of the header, of which 16 MiB are read
 _MOST = 1 << 26  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
 
@@ -31,18 +35,51 @@ class ControlMesh:
     Attributes
     ----------
     mesh : TriMesh
-        Positions and faces only.
+        Positions and faces only; of polygons their fans.
     refinement : Refinement
         What is meant where nothing else is chosen.
     up : "x", "y" or "z"
     sharp : (k, 2) int32 or None
         The vertices of edges that stay sharp, where there are any.
+    polygons : PolyMesh or None
+        What it is made of where that is more than triangles, for catmull-clark.
     """
 
     mesh: "TriMesh"
     refinement: Refinement
     up: str
     sharp: NDArray[np.int32] | None = None
+    polygons: "PolyMesh | None" = None
+
+    @classmethod
+    def of_polygons(cls, polygons: "PolyMesh", refinement: Refinement, up: str, /) -> "ControlMesh":
+        """One of polygons."""
+        return cls(polygons.triangulated(), refinement, up, None, polygons)
+
+    def surface(self) -> "PolyMesh":
+        """The polygons, or the triangles as such."""
+        from foveal.mesh.polymesh import PolyMesh
+
+        return self.polygons or PolyMesh.of_triangles(self.mesh)
+
+    def refuse_misfit(self, scheme: str, name: str, /) -> None:
+        """Say that it cannot be refined by a scheme.
+
+        Raises
+        ------
+        FovealError
+            If it has what the scheme does not know.
+        """
+        has, known = None, "sqrt3"
+        if self.sharp is not None and scheme != "sqrt3":
+            has = "sharp edges"
+        elif self.polygons is not None and scheme != CATMULL_CLARK:
+            has, known = "polygons and their creases", CATMULL_CLARK
+        if has:
+            raise FovealError(
+                f"{name}: it has {has}, which {scheme} does not know. Choose {known}, or build it anew by "
+                f"{scheme}, which leaves them out."
+            )
 
 
 @dataclass(frozen=True)
@@ -60,6 +97,8 @@ class CageReport:
     scheme : str
     bytes : int
         Of the file.
+    polygons : PolygonCounts or None
+        For catmull-clark.
     """
 
     triangles: int
@@ -68,10 +107,11 @@ class CageReport:
     sharp_edges: int
     scheme: str
     bytes: int
+    polygons: PolygonCounts | None = None
 
 
 def write_cage(
-    mesh: "TriMesh",
+    mesh: "TriMesh | PolyMesh",
     path: PathLike,
     /,
     *,
@@ -80,30 +120,32 @@ def write_cage(
     sharp_edges: ArrayLike | None = None,
     name: str = "mesh",
 ) -> CageReport:
-    """Write a control mesh; vertices at one place become one.
+    """Write a control mesh; of triangles, vertices at one place become one.
 
-    `sharp_edges` is an angle by which those bend that stay sharp, or (k, 2) int, their vertices then.
+    It is of polygons for catmull-clark, and of triangles for all else. `sharp_edges` is an angle by which
+    those bend that stay sharp, or (k, 2) int, their vertices then.
 
     Raises
     ------
     FovealError
         If the mesh is no oriented surface, in a sentence that names the edge or vertex.
     """
+    from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.topology import weld
     from foveal.refine.cage import Cage
 
+    if isinstance(mesh, PolyMesh):
+        return _write_polygons(mesh.checked(name), path, refinement, up, name)
     welded = weld(mesh)[0]
     positions, faces = welded.positions, welded.faces
-    if max(len(positions), len(faces)) > _MOST:
-        raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
+    if refinement.scheme == CATMULL_CLARK:
+        polygons = PolyMesh.of_triangles(welded).checked(name)
+        return _write_polygons(polygons, path, refinement, up, name)
+    _refuse_large(name, len(positions), len(faces))
     Cage.of(welded, name=name)
     sharp = _sharp_of(welded, sharp_edges, name)
-    low, high, origin = _box(positions)
     header = {
-        "generator": f"foveal {__version__}",
-        "origin": origin.tolist(),
-        "box": [low.tolist(), high.tolist()],
-        "up": up,
+        **_frame(positions, up),
         "vertices": len(positions),
         "triangles": len(faces),
         **({"sharp_edges": sharp.reshape(-1).tolist()} if len(sharp) else {}),
@@ -114,6 +156,37 @@ def write_cage(
     repeated = len(mesh.positions) - len(positions)
     size = Path(path).stat().st_size
     return CageReport(len(faces), len(positions), repeated, len(sharp), refinement.scheme, size)
+
+
+def _write_polygons(
+    mesh: "PolyMesh", path: PathLike, refinement: Refinement, up: str, name: str
+) -> CageReport:
+    if refinement.scheme != CATMULL_CLARK:
+        raise FovealError(f"{name}: polygons are refined by {CATMULL_CLARK} alone. Choose that.")
+    counts = polygons_header(mesh)
+    _refuse_large(name, *(counts[key] for key in ("vertices", "corners", "creases")))
+    header = {**_frame(mesh.positions, up), **counts, **refinement_json(refinement)}
+    with create(path, kind=KIND, version=POLYGONS_VERSION) as writer:
+        writer.finish(header, polygons_chunk(mesh))
+    size = Path(path).stat().st_size
+    found = PolygonCounts.of(mesh)
+    return CageReport(counts["triangles"], counts["vertices"], 0, 0, refinement.scheme, size, found)
+
+
+def _refuse_large(name: str, *counts: int) -> None:
+    if max(counts) > _MOST:
+        raise FovealError(f"{name}: it is too large for a control mesh. Build it without a scheme.")
+
+
+def _frame(positions: NDArray[np.float64], up: str) -> dict[str, Any]:
+    """What any control mesh's header begins with."""
+    low, high, origin = _box(positions)
+    return {
+        "generator": f"foveal {__version__}",
+        "origin": origin.tolist(),
+        "box": [low.tolist(), high.tolist()],
+        "up": up,
+    }
 
 
 def _sharp_of(mesh: "TriMesh", given: ArrayLike | None, name: str) -> NDArray[np.int32]:
@@ -153,10 +226,23 @@ def read_cage(path: PathLike, /) -> ControlMesh:
 
 def control_mesh(file: Container, /) -> ControlMesh:
     """The same of an open file."""
+    file.expect(KIND, VERSION, POLYGONS_VERSION)
+    if file.version == POLYGONS_VERSION:
+        polygons = polygons_of(file, partial(_count, file), partial(_damaged, file))
+        up = _up_of(file, polygons.positions)
+        refinement = refinement_of(file.header, file.name)
+        if refinement.scheme != CATMULL_CLARK:
+            raise _damaged(file, "scheme")
+        return ControlMesh.of_polygons(polygons, refinement, up)
+    mesh = _triangles(file)
+    up = _up_of(file, mesh.positions)
+    return ControlMesh(mesh, refinement_of(file.header, file.name), up, _sharp(file, len(mesh.positions)))
+
+
+def _triangles(file: Container) -> "TriMesh":
+    """The mesh of version 1."""
     from foveal.mesh.trimesh import TriMesh
 
-    file.expect(KIND, VERSION)
-    header = file.header
     vertices, faces = _count(file, "vertices"), _count(file, "triangles")
     data = file.chunk(0)
     if len(file) != 1 or len(data) != 24 * vertices + 12 * faces:
@@ -164,16 +250,20 @@ def control_mesh(file: Container, /) -> ControlMesh:
     indices = np.frombuffer(data, "<u4", offset=24 * vertices).reshape(-1, 3)
     if (indices >= vertices).any():
         raise _damaged(file, "faces")
-    mesh = TriMesh.of(
-        np.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3), indices.astype(np.int32), name=file.name
-    )
-    low, high, origin = _box(mesh.positions)
+    positions = np.frombuffer(data, "<f8", 3 * vertices).reshape(-1, 3)
+    return TriMesh.of(positions, indices.astype(np.int32), name=file.name)
+
+
+def _up_of(file: Container, positions: NDArray[np.float64]) -> str:
+    """The axis that points up, once it is sure that the header speaks of these positions."""
+    low, high, origin = _box(positions)
+    header = file.header
     if header.get("origin") != origin.tolist() or header.get("box") != [low.tolist(), high.tolist()]:
         raise _damaged(file, "box")
     up = header.get("up")
     if up not in ("x", "y", "z"):
         raise _damaged(file, "up")
-    return ControlMesh(mesh, refinement_of(header, file.name), up, _sharp(file, vertices))
+    return str(up)
 
 
 def _box(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
@@ -191,9 +281,9 @@ def _sharp(file: Container, vertices: int) -> NDArray[np.int32] | None:
     return np.array(listed, np.int32).reshape(-1, 2) if listed else None
 
 
-def _count(file: Container, key: str) -> int:
+def _count(file: Container, key: str, least: int = 1) -> int:
     value = file.header.get(key)
-    if type(value) is not int or not 1 <= value <= _MOST:
+    if type(value) is not int or not least <= value <= _MOST:
         raise _damaged(file, key)
     return value
 

@@ -9,6 +9,7 @@ from foveal.base.files import PathLike, refuse_missing
 from foveal.base.progress import SILENT, Progress
 
 from .cage_file import is_cage, read_cage
+from .cage_polygons import PolygonCounts, has_border
 from .read import read
 from .scene import read_scene
 
@@ -85,6 +86,13 @@ def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
     if original is not None:
         raise FovealError(f"{path}: a control mesh has no errors to be measured. Leave the original out.")
     cage = read_cage(path)
+    if cage.polygons is not None:  # which were looked at when they were read
+        return {
+            "triangles": len(cage.mesh.faces),
+            "vertices": len(cage.mesh.positions),
+            "polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons)),
+            "is_closed": not has_border(cage.polygons),
+        }
     surface = Cage.of(cage.mesh, name=str(path))
     Cage.of(cage.mesh, sharp=cage.sharp, name=str(path))
     return {

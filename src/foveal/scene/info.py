@@ -19,6 +19,7 @@ from foveal.container import Container, open_container
 
 from .cage_file import KIND as CAGE
 from .cage_file import control_mesh
+from .cage_polygons import PolygonCounts
 from .refinement import refinement_json
 from .scene import read_scene
 
@@ -125,8 +126,11 @@ def _cage_info(file: Container, size: int) -> dict[str, Any]:
         "vertices": len(cage.mesh.positions),
         "box": file.header["box"],
         "up": cage.up,
-        "attributes": [],
+        "attributes": file.header["attributes"] if cage.polygons else [],
         "sharp_edges": 0 if cage.sharp is None else len(cage.sharp),
+        **(
+            {} if cage.polygons is None else {"polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons))}
+        ),
         **refinement_json(cage.refinement),
         "generator": file.header.get("generator"),
     }

@@ -33,7 +33,13 @@ CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
 _SHAPING = ("bits", "step", "normals", "up", "sharp_edges")  # the options that change the bytes of a build
-_REFINING = ("criteria", "positions", "budget", "rate")  # and those that a scene can say of a control mesh
+_REFINING = (
+    "criteria",
+    "depths",
+    "positions",
+    "budget",
+    "rate",
+)  # and those that a scene can say of a control mesh
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20
 _DIGITS = 20
@@ -86,12 +92,8 @@ def _look_at(layer: Layer, name: str, progress: Progress) -> None:
     """Of a control mesh, built now or long ago: tell that it is inside out, refuse what does not fit."""
     if layer.refinement is None:
         return
-    cage, scheme = read_cage(layer.path), layer.refinement.scheme
-    if cage.sharp is not None and scheme != "sqrt3":
-        raise FovealError(
-            f"{name}: it has sharp edges, which {scheme} does not know. Choose sqrt3, or build it anew by "
-            f"{scheme}, which leaves them out."
-        )
+    cage = read_cage(layer.path)
+    cage.refuse_misfit(layer.refinement.scheme, name)
     tell_inside_out(cage.mesh, name, progress)
 
 
@@ -193,7 +195,8 @@ def _builder() -> str:
     state = hashlib.blake2b()
     rooms = (package / room for room in ("base", "coding", "container", "mesh", "multires"))
     files = (file for room in rooms for file in sorted(room.rglob("*.py")))
-    for file in (*files, package / "scene" / "cage_file.py", package / "scene" / "refinement.py"):
+    own = ("cage_file.py", "cage_polygons.py", "depth_rules.py", "refinement.py")
+    for file in (*files, *(package / "scene" / name for name in own)):
         state.update(file.read_bytes())
     return state.hexdigest()
 

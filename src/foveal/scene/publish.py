@@ -89,6 +89,12 @@ def publish(
             raise FovealError(
                 f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
             )
+    for layer in scene.layers:
+        if layer.refinement is not None and layer.refinement.scheme != "sqrt3":
+            progress.note(
+                f"{layer.name}: a page refines by sqrt3 only, so without a server it will say that "
+                f"{layer.refinement.scheme} needs one. Show it with 'foveal view'."
+            )
     names = asset_names(scene)
     total = sum(path.stat().st_size for path in names)
     with whole_folder(folder, force=force) as part, progress.stage("Copying", total) as stage:

@@ -16,8 +16,11 @@ from foveal.view.camera import Camera
 
 from .build import Source, checked, up_of
 from .cage_file import ControlMesh, is_cage, read_cage
+from .cage_polygons import PolygonCounts, read_polygons, told
+from .depth_rules import CATMULL_CLARK
 from .export import refuse_mesh_output, write_mesh
 from .facing import tell_inside_out
+from .patched import uniformly
 from .prepare import refuse_shaping
 from .read import read
 from .refine_size import everywhere as everywhere_count
@@ -94,7 +97,9 @@ def refine(
     name = "mesh" if isinstance(source, TriMesh) else str(source)
     if isinstance(camera, (str, os.PathLike)):
         camera = read_camera(camera)
-    cage = _cage(source, up, options)
+    cage = _cage(source, name, up, options)
+    if cage.polygons is not None:
+        progress.note(f"{name}: {told(PolygonCounts.of(cage.polygons))}.")
     tell_inside_out(cage.mesh, name, progress)
     if mode == "filter" and (everywhere or visible_only):
         what = "everywhere" if everywhere else "visible_only"
@@ -111,7 +116,7 @@ def refine(
     return mesh
 
 
-def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> ControlMesh:
+def _cage(source: Path | TriMesh, name: str, up: str | None, options: RefineOptions) -> ControlMesh:
     """What is to be refined, and how."""
     from foveal.mesh.topology import weld
 
@@ -123,9 +128,14 @@ def _cage(source: Path | TriMesh, up: str | None, options: RefineOptions) -> Con
             refuse_shaping(source, {"up": up}, is_refined=True)
             cage = read_cage(source)
             own = cage.refinement.chosen(options)
+            cage.refuse_misfit(own.scheme, name)
+            if own.scheme == CATMULL_CLARK:
+                return ControlMesh.of_polygons(cage.surface(), own, cage.up)
             return ControlMesh(cage.mesh, own, cage.up, _sharp(cage.mesh, options, cage.sharp))
     refinement = chosen({**options, "scheme": options.get("scheme") or "sqrt3"})
     assert refinement is not None
+    if refinement.scheme == CATMULL_CLARK:
+        return ControlMesh.of_polygons(read_polygons(source, name), refinement, up_of({"up": up}))
     mesh = source if isinstance(source, TriMesh) else read(source)
     welded = weld(mesh)[0]
     return ControlMesh(welded, refinement, up_of({"up": up}), _sharp(welded, options, None))
@@ -150,6 +160,8 @@ def _everywhere(cage: ControlMesh, name: str) -> ControlMesh:
     from foveal.refine import Criteria, Region
 
     refinement = cage.refinement
+    if refinement.scheme == CATMULL_CLARK:
+        return dataclasses.replace(cage, refinement=uniformly(cage, name))
     iterations = refinement.criteria.front.iterations
     count = everywhere_count(len(cage.mesh.faces), refinement.scheme, iterations)
     most = most_triangles(refinement.scheme)

@@ -17,7 +17,7 @@ MOST_TRIANGLES = 50_000_000
 
 # Of memory for a triangle, with what growing takes and the mesh that is handed out. Measured at 19, 21 and 7
 # million: 190 for √3, 275 for Loop, 86 for the √3 paper's way.
-_BYTES = {"sqrt3": 220, "loop": 300, "butterfly": 300, "filter": 200}
+_BYTES = {"sqrt3": 220, "loop": 300, "butterfly": 300, "filter": 200, "catmull-clark": 300}
 _SHARE = 0.8  # of the memory that is free
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress, Stage
@@ -11,6 +11,8 @@ from foveal.view.camera import Camera
 
 from .apart import apart
 from .cage_file import ControlMesh
+from .depth_rules import CATMULL_CLARK
+from .patched import patched
 from .refine_size import expected, most_triangles
 
 if TYPE_CHECKING:
@@ -37,6 +39,10 @@ def refined(
     FovealError
         If there would be more triangles than memory or anybody's patience holds.
     """
+    if cage.refinement.scheme == CATMULL_CLARK:
+        if not has_hidden:
+            raise FovealError(_only_sqrt3(name))
+        return patched(cage, camera, name=name, progress=progress)
     with progress.stage("Refining", _total(cage, camera)) as stage:
         return apart(lambda heed: _Work(cage, camera, name, stage, heed).mesh(has_hidden=has_hidden))
 
@@ -96,6 +102,10 @@ def _too_many(name: str, most: int) -> FovealError:
     )
 
 
+def _only_sqrt3(name: str) -> str:
+    return f"{name}: what is hidden can be left out by sqrt3 only. Choose that."
+
+
 class _Work:
     """One refinement under way: `heed` is called between slices, and may end it."""
 
@@ -106,7 +116,7 @@ class _Work:
 
         self._cage, self._camera, self._name = cage, camera, name
         self._stage, self._heed = stage, heed
-        self._live = refiner(cage.mesh, scheme=cage.refinement.scheme, sharp=cage.sharp, name=name)
+        self._live = refiner(cage.mesh, scheme=cast(Any, cage.refinement.scheme), sharp=cage.sharp, name=name)
         self._most = max(most_triangles(cage.refinement.scheme), len(cage.mesh.faces))
         self._told = 0
 
@@ -117,7 +127,7 @@ class _Work:
 
         live, camera, refinement = self._live, self._camera, self._cage.refinement
         if not has_hidden and not isinstance(live, Sqrt3):
-            raise FovealError(f"{self._name}: what is hidden can be left out by sqrt3 only. Choose that.")
+            raise FovealError(_only_sqrt3(self._name))
         self._bring(live.update)
         if not has_hidden and isinstance(live, Sqrt3):
             self._bring(partial(live.update, hidden=Hidden.behind(live.mesh(), camera)))

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
 from foveal.base.errors import FovealError
 
+from .depth_rules import CATMULL_CLARK, depths_with
+
 if TYPE_CHECKING:
     from foveal.refine import Criteria
+    from foveal.refine.slates_depth import Depths
 
 __all__ = ["RefineOptions", "Refinement", "chosen", "refinement_json", "refinement_of"]
 
-SCHEMES = ("sqrt3", "loop", "butterfly")
+SCHEMES = ("sqrt3", "loop", "butterfly", CATMULL_CLARK)
 _PLACINGS = ("control", "limit")
 _REGIONS = ("front", "silhouette", "back")
 
@@ -20,12 +23,16 @@ _REGIONS = ("front", "silhouette", "back")
 class RefineOptions(TypedDict, total=False):
     """What verbs take that refine a control mesh. None is the default, or what the file or the scene says.
 
-    scheme : "sqrt3", "loop" or "butterfly"
-        Makes a control mesh of a mesh: √3 subdivision, or RGB triangulations over the rules of Loop or of
-        the modified butterfly.
+    scheme : "sqrt3", "loop", "butterfly" or "catmull-clark"
+        Makes a control mesh of a mesh: √3 subdivision, RGB triangulations over the rules of Loop or of the
+        modified butterfly, or Catmull-Clark patches of polygons.
     criteria : Criteria or mapping
         When a triangle is fine enough, apart for front faces, silhouettes and back faces. A mapping such as
-        {"front": {"edge_px": 2.0}} leaves all else as it is.
+        {"front": {"edge_px": 2.0}} leaves all else as it is. For catmull-clark only iterations and bend of
+        "front", which are the maximum depth and the angle of the cone.
+    depths : Depths or mapping
+        By which rules patches get their depth, for catmull-clark. A mapping such as {"size_px": (2, 8)}
+        leaves all else as it is.
     positions : "control" or "limit"
         Where vertices are shown.
     budget : int
@@ -39,6 +46,7 @@ class RefineOptions(TypedDict, total=False):
 
     scheme: str | None
     criteria: "Criteria | Mapping[str, Mapping[str, float]] | None"
+    depths: "Depths | Mapping[str, Any] | None"
     positions: str | None
     budget: int | None
     rate: float | None
@@ -51,20 +59,24 @@ class Refinement:
 
     Attributes
     ----------
-    scheme : "sqrt3", "loop" or "butterfly"
+    scheme : "sqrt3", "loop", "butterfly" or "catmull-clark"
     criteria : Criteria
+        Of catmull-clark they say nothing.
     positions : "control" or "limit"
     budget : int
         Triangles at most, or 0.
     rate : float
         Frames a second to be held, or 0.
+    depths : Depths or None
+        Of catmull-clark, for which None are the default ones.
     """
 
-    scheme: Literal["sqrt3", "loop", "butterfly"]
+    scheme: Literal["sqrt3", "loop", "butterfly", "catmull-clark"]
     criteria: "Criteria"
     positions: Literal["control", "limit"] = "control"
     budget: int = 0
     rate: float = 0.0
+    depths: "Depths | None" = None
 
     def __post_init__(self) -> None:
         if self.scheme not in SCHEMES:
@@ -77,11 +89,24 @@ class Refinement:
             raise ValueError(f"rate must be from 0 to 1000 frames a second, got {self.rate!r}")
 
     def chosen(self, options: RefineOptions, /) -> "Refinement":
-        """The same with what was chosen anew."""
+        """The same with what was chosen anew.
+
+        Raises
+        ------
+        FovealError
+            If it is something that the scheme does not have.
+        """
         names = self.__dataclass_fields__
         new: dict[str, Any] = {
             key: value for key, value in options.items() if key in names and value is not None
         }
+        scheme = new.get("scheme", self.scheme)
+        if scheme == CATMULL_CLARK:
+            new["depths"] = depths_with(self.depths, options)
+            new.pop("criteria", None)
+            return replace(self, **{**new, "positions": "limit"})
+        if "depths" in new:
+            raise FovealError(f"{scheme} has no rules of depth. Choose catmull-clark, or leave them out.")
         if isinstance(new.get("criteria"), Mapping):
             new["criteria"] = _changed(self.criteria, new["criteria"])
         return replace(self, **new)
@@ -106,7 +131,8 @@ def chosen(options: RefineOptions, /) -> Refinement | None:
         if sharp is not None and not 0 <= sharp <= math.pi:
             raise ValueError(f"sharp_edges must be an angle from 0 to pi, got {sharp}")
         if sharp is not None and scheme in SCHEMES and scheme != "sqrt3":
-            raise FovealError(f"{scheme} knows no sharp edges. Choose sqrt3, or leave sharp_edges out.")
+            own = " by an angle: it keeps the creases of the file" if scheme == CATMULL_CLARK else ""
+            raise FovealError(f"{scheme} knows no sharp edges{own}. Choose sqrt3, or leave sharp_edges out.")
         from foveal.refine import Criteria
 
         return Refinement(cast(Any, scheme), Criteria()).chosen(options)
@@ -118,6 +144,16 @@ def chosen(options: RefineOptions, /) -> Refinement | None:
 
 def refinement_json(refinement: Refinement, /) -> dict[str, Any]:
     """As a layer of scene.json and the header of a control mesh have it; angles in degrees."""
+    if refinement.scheme == CATMULL_CLARK:
+        from foveal.refine.depth_words import depths_json
+
+        rules = depths_json(refinement.depths or depths_with(None, {}))
+        return {
+            "scheme": refinement.scheme,
+            "depths": rules,
+            "budget": refinement.budget,
+            "rate": refinement.rate,
+        }
     return {
         "scheme": refinement.scheme,
         "criteria": {
@@ -144,6 +180,7 @@ def refinement_of(data: dict[str, Any], where: str, /, *, default: Refinement | 
         In a sentence that begins with `where`: no scheme, one that is not known, a number that is none.
     """
     from foveal.refine import Criteria, Region
+    from foveal.refine.depth_words import depths_of
 
     try:
         if "scheme" not in data and default is None:
@@ -161,6 +198,7 @@ def refinement_of(data: dict[str, Any], where: str, /, *, default: Refinement | 
             data.get("positions", base.positions),
             data.get("budget", base.budget),
             float(data.get("rate", base.rate)),
+            depths_of(data["depths"], default=base.depths) if "depths" in data else base.depths,
         )
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
         raise FovealError(

@@ -17,7 +17,7 @@ from foveal.scene import Layer
 from .asgi import Receive, Scope, Send, refuse
 
 if TYPE_CHECKING:
-    from foveal.refine.session import Session
+    from foveal.refine.dialogue import Dialogue
 
 __all__ = ["MAX_SESSIONS", "Live"]
 
@@ -96,7 +96,7 @@ class Live:
         elif why is not None:
             raise why
 
-    async def _answer(self, socket: WebSocket, session: "Session", asked: asyncio.Event) -> None:
+    async def _answer(self, socket: WebSocket, session: "Dialogue", asked: asyncio.Event) -> None:
         """Send what the session says, each message when the one before is acknowledged."""
         loop = asyncio.get_running_loop()
         while True:
@@ -117,17 +117,18 @@ class _RefinementError(Exception):
     """What a page is told where its refinement failed."""
 
 
-def _session(layer: Layer) -> "Session":
+def _session(layer: Layer) -> "Dialogue":
     """A refinement of a layer's control mesh of its own."""
-    from foveal.refine.session import Session
     from foveal.scene.cage_file import read_cage
+
+    from .warm import begun
 
     assert layer.refinement is not None
     cage = read_cage(layer.path)
-    return Session(cage.mesh, scheme=layer.refinement.scheme, sharp=cage.sharp, name=layer.path.name)
+    return begun(cage, layer.refinement.scheme, layer.path.name)
 
 
-async def _listen(socket: WebSocket, session: "Session", asked: asyncio.Event) -> None:
+async def _listen(socket: WebSocket, session: "Dialogue", asked: asyncio.Event) -> None:
     """Hand on requests as they come, the last in place of those before it."""
     from foveal.refine.wire import request_of
 

@@ -104,8 +104,11 @@ export class App {
     this.stage.navigation.home(false);
     this.#applyState();
     this.#address.read();
-    const triangles = opened.reduce((sum, { info }) => sum + info.triangles, 0);
-    const count = triangles ? `${triangles.toLocaleString("en")} ${WORDS.triangles}` : "";
+    const polygons = opened.map(({ info }) => ("polygons" in info && info.polygons) || 0);
+    const arePolygons = polygons.every((faces) => faces > 0);
+    const counts = arePolygons ? polygons : opened.map(({ info }) => info.triangles);
+    const total = counts.reduce((sum, faces) => sum + faces, 0);
+    const count = total ? `${total.toLocaleString("en")} ${arePolygons ? WORDS.faces : WORDS.triangles}` : "";
     byId("subtitle").textContent = this.refinement ? `${count}, ${WORDS.refinedHere}` : count;
     showViews(this.scene.views, (camera) => this.stage.setCamera(camera, true));
     this.#toolbar.update();

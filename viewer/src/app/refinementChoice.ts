@@ -1,5 +1,11 @@
 /** What the visitor chose of a refinement, in the link as `r`: what is not chosen is as the scene says. */
-import type { Positions, Refinement, RegionLimits } from "../format/cage";
+import {
+  type DepthRules,
+  MOST_DEPTH,
+  type Positions,
+  type Refinement,
+  type RegionLimits,
+} from "../format/cage";
 
 /** Null where nothing was chosen. */
 export interface RefinementChoice {
@@ -9,7 +15,15 @@ export interface RefinementChoice {
   readonly silhouettePx: number | null;
   readonly bendDegrees: number | null;
   readonly positions: Positions | null;
+  /** Largest radius of a piece of a patch. */
+  readonly radiusPx: number | null;
+  /** The rules for the depth of patches that hold, all others being left out. */
+  readonly rules: readonly Rule[] | null;
 }
+
+/** In the link by their first letters. */
+export const RULES = ["curvature", "backs", "silhouettes", "size"] as const;
+export type Rule = (typeof RULES)[number];
 
 /** Budget and rate belong to the device that looks, and stay out of links, as the other budgets do. */
 export interface DeviceChoice {
@@ -24,9 +38,11 @@ export const NO_CHOICE: RefinementChoice = {
   silhouettePx: null,
   bendDegrees: null,
   positions: null,
+  radiusPx: null,
+  rules: null,
 };
 
-type NumberKey = Exclude<keyof RefinementChoice, "positions">;
+type NumberKey = Exclude<keyof RefinementChoice, "positions" | "radiusPx" | "rules">;
 
 /** Key, least, greatest, whether whole. */
 export const RANGES: Readonly<Record<NumberKey, readonly [low: number, high: number, isWhole: boolean]>> = {
@@ -39,13 +55,21 @@ export const RANGES: Readonly<Record<NumberKey, readonly [low: number, high: num
 
 const KEYS = Object.keys(RANGES) as NumberKey[];
 
-/** E.g. `5,,8,,,limit`: in the order above, nothing between commas where nothing was chosen. */
+const RADII = [0.01, 10_000] as const;
+const NO_RULES = "-";
+
+/** E.g. `5,,8,,,limit,12,cs`: in the order above, nothing between commas where nothing was chosen. */
 export function formatChoice(choice: RefinementChoice): string {
-  const words = KEYS.map((key) => {
-    const value = choice[key];
-    return value === null ? "" : String(Number(value.toPrecision(4)));
-  });
-  return [...words, choice.positions ?? ""].join(",").replace(/,+$/, "");
+  const short = (value: number | null): string =>
+    value === null ? "" : String(Number(value.toPrecision(4)));
+  const words = KEYS.map((key) => short(choice[key]));
+  const rules = choice.rules && (choice.rules.map(letterOf).join("") || NO_RULES);
+  return [...words, choice.positions ?? "", short(choice.radiusPx), rules ?? ""].join(",").replace(/,+$/, "");
+}
+
+/** c, b, s, and z of size. */
+function letterOf(rule: Rule): string {
+  return rule === "size" ? "z" : rule[0]!;
 }
 
 /** What such a text says; what it says badly counts as not chosen. */
@@ -57,7 +81,8 @@ export function parseChoice(text: string | undefined): RefinementChoice {
     const value = word ? Number(word) : Number.NaN;
     return value >= low && value <= high && (!isWhole || Number.isInteger(value)) ? value : null;
   };
-  const positions = words[KEYS.length];
+  const [positions, radius, letters] = words.slice(KEYS.length);
+  const radiusPx = radius ? Number(radius) : Number.NaN;
   return {
     frontIterations: number("frontIterations"),
     frontPx: number("frontPx"),
@@ -65,6 +90,8 @@ export function parseChoice(text: string | undefined): RefinementChoice {
     silhouettePx: number("silhouettePx"),
     bendDegrees: number("bendDegrees"),
     positions: positions === "control" || positions === "limit" ? positions : null,
+    radiusPx: radiusPx >= RADII[0] && radiusPx <= RADII[1] ? radiusPx : null,
+    rules: letters ? RULES.filter((rule) => letters.includes(letterOf(rule))) : null,
   };
 }
 
@@ -87,8 +114,34 @@ export function refinementWith(
       silhouette: region(silhouette, choice.silhouetteIterations, choice.silhouettePx),
       back,
     },
+    depths: depthsWith(base.depths, choice),
     positions: choice.positions ?? base.positions,
     budget: budget ?? base.budget,
     rate: rate ?? base.rate,
   };
+}
+
+/** What a rule says where the scene leaves it out and the visitor does not. */
+const USUAL = { cone: 8, size: [3, 24] } as const;
+
+/** Maximum depth and cone are what front faces call iterations and bend. */
+function depthsWith(own: DepthRules, choice: RefinementChoice): DepthRules {
+  const holds = (rule: Rule, is: boolean): boolean => (choice.rules ? choice.rules.includes(rule) : is);
+  const cone = choice.bendDegrees ?? own.cone_degrees ?? USUAL.cone;
+  const [least, most] = own.size_px ?? USUAL.size;
+  const radius = choice.radiusPx ?? most;
+  return {
+    ...own,
+    most: Math.min(MOST_DEPTH, choice.frontIterations ?? own.most),
+    cone_degrees: holds("curvature", own.cone_degrees !== null) && cone > 0 ? cone : null,
+    backs: holds("backs", own.backs),
+    silhouettes: holds("silhouettes", own.silhouettes),
+    size_px: holds("size", own.size_px !== null) ? [(least * radius) / most, radius] : null,
+  };
+}
+
+/** The rules that hold. */
+export function rulesOf({ cone_degrees, backs, silhouettes, size_px }: DepthRules): Rule[] {
+  const is = { curvature: cone_degrees !== null, backs, silhouettes, size: size_px !== null };
+  return RULES.filter((rule) => is[rule]);
 }

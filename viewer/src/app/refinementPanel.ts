@@ -1,12 +1,13 @@
 /** The sheet of a refinement: how fine it is where, what it may cost, and how it is shown. */
+import { CATMULL_CLARK, MOST_DEPTH } from "../format/cage";
 import { LEVELS } from "../scene/palette";
 import type { App } from "./app";
 import { make } from "./dom";
 import type { RefinementControl } from "./refinement";
-import type { RefinementChoice } from "./refinementChoice";
+import { type RefinementChoice, RULES, rulesOf } from "./refinementChoice";
 import { Sheet } from "./sheet";
 import type { NumberSetting } from "./slider";
-import { SCHEME_NAMES, WORDS } from "./words";
+import { RULE_NAMES, SCHEME_NAMES, WORDS } from "./words";
 
 /** More are never needed: 3^10 triangles for each of the control mesh. */
 const MOST_ITERATIONS = 10;
@@ -15,12 +16,22 @@ export function makeRefinementPanel(app: App, control: RefinementControl): Sheet
   const sheet = new Sheet("refinement", WORDS.refinement);
   sheet.add(make("p", { class: "about" }, aboutOf(control)));
   addColours(sheet, app, control);
+  const schemes = new Set(control.cages.map(({ refinement }) => refinement.scheme));
+  if (schemes.has(CATMULL_CLARK)) addPatches(sheet, control);
+  if (schemes.size > 1 || !schemes.has(CATMULL_CLARK)) addRegions(sheet, control);
+  else for (const setting of costsOf(control)) sheet.addSlider(setting);
+  sheet.addSwitch({ name: WORDS.inset, get: () => control.isInsetOn, set: () => control.toggleInset() });
+  sheet.addReset("Back to the scene's own", () => control.reset());
+  return sheet;
+}
+
+function addRegions(sheet: Sheet, control: RefinementControl): void {
   sheet.addHeading("Where the surface faces the eye");
   for (const setting of frontOf(control)) sheet.addSlider(setting);
   sheet.addHeading("On the silhouette");
   for (const setting of silhouetteOf(control)) sheet.addSlider(setting);
   sheet.addHeading("Everywhere");
-  for (const setting of everywhereOf(control)) sheet.addSlider(setting);
+  for (const setting of [bendOf(control), ...costsOf(control)]) sheet.addSlider(setting);
   sheet.addSelection({
     id: "positions",
     label: "Vertices",
@@ -31,23 +42,21 @@ export function makeRefinementPanel(app: App, control: RefinementControl): Sheet
     get: () => control.wants.positions,
     set: (positions) => control.choose({ positions }),
   });
-  sheet.addSwitch({ name: WORDS.inset, get: () => control.isInsetOn, set: () => control.toggleInset() });
-  sheet.addReset("Back to the scene's own", () => control.reset());
-  return sheet;
 }
 
 function aboutOf({ cages }: RefinementControl): string {
   return cages
-    .map(
-      ({ refinement, info }) =>
-        `${SCHEME_NAMES[refinement.scheme]} of ${info.triangles.toLocaleString("en")} triangles.`,
+    .map(({ refinement, info }) =>
+      info.polygons === undefined
+        ? `${SCHEME_NAMES[refinement.scheme]} of ${info.triangles.toLocaleString("en")} triangles.`
+        : `${SCHEME_NAMES[refinement.scheme]} of ${info.polygons.toLocaleString("en")} faces.`,
     )
     .join(" ");
 }
 
 function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void {
-  // √3 triangles are all green
-  const isRgb = cages.some(({ refinement }) => refinement.scheme !== "sqrt3");
+  // √3 triangles and those of patches are all green
+  const isRgb = cages.some(({ refinement }) => ["loop", "butterfly"].includes(refinement.scheme));
   const hasTriplet = isRgb || app.state.faceColours === "triplet";
   const legend = make("div", { class: "legend", role: "img", "aria-label": "Levels from light to dark" });
   for (const [level, colour] of LEVELS.entries()) {
@@ -76,7 +85,7 @@ function addColours(sheet: Sheet, app: App, { cages }: RefinementControl): void 
   sheet.add(legend);
 }
 
-type NumberKey = Exclude<keyof RefinementChoice, "positions">;
+type NumberKey = Exclude<keyof RefinementChoice, "positions" | "radiusPx" | "rules">;
 
 function iterations(
   control: RefinementControl,
@@ -129,19 +138,60 @@ function silhouetteOf(control: RefinementControl): NumberSetting[] {
   ];
 }
 
-function everywhereOf(control: RefinementControl): NumberSetting[] {
+/** How deep patches are: a rule each, which can be left out. */
+function addPatches(sheet: Sheet, control: RefinementControl): void {
+  const rules = () => control.wants.depths;
+  sheet.addHeading("How deep patches are");
+  sheet.addSlider({
+    ...iterations(control, "frontIterations", "Depth", () => rules().most),
+    high: MOST_DEPTH,
+  });
+  sheet.addSlider({
+    ...bendOf(control),
+    label: "Curvature",
+    hint: "So deep that normals around a vertex are within this angle.",
+    get: () => rules().cone_degrees ?? 0,
+  });
+  sheet.addSlider({
+    id: "radius",
+    label: "Largest radius",
+    hint: "Pieces of a patch are no larger on the picture.",
+    low: 1,
+    high: 200,
+    isLogarithmic: true,
+    show: (value) => `${Number(value.toPrecision(2))} px`,
+    get: () => rules().size_px?.[1] ?? 24,
+    set: (radiusPx) => control.choose({ radiusPx }),
+  });
+  sheet.addSwitches(
+    "Rules",
+    RULES.map((rule) => ({
+      name: RULE_NAMES[rule],
+      get: () => rulesOf(rules()).includes(rule),
+      set: (is: boolean) => {
+        const others = rulesOf(rules()).filter((one) => one !== rule);
+        control.choose({ rules: RULES.filter((one) => (one === rule ? is : others.includes(one))) });
+      },
+    })),
+  );
+}
+
+function bendOf(control: RefinementControl): NumberSetting {
+  return {
+    id: "bend",
+    label: "Bend",
+    hint: "Where the surface bends less, nothing is split.",
+    low: 0,
+    high: 30,
+    isLogarithmic: false,
+    show: (value) => (value === 0 ? "any" : `${Number(value.toPrecision(3))}°`),
+    get: () => (control.wants.criteria.front.bend * 180) / Math.PI,
+    set: (bendDegrees) => control.choose({ bendDegrees }),
+  };
+}
+
+function costsOf(control: RefinementControl): NumberSetting[] {
   return [
-    {
-      id: "bend",
-      label: "Bend",
-      hint: "Where the surface bends less, nothing is split.",
-      low: 0,
-      high: 30,
-      isLogarithmic: false,
-      show: (value) => (value === 0 ? "any" : `${Number(value.toPrecision(3))}°`),
-      get: () => (control.wants.criteria.front.bend * 180) / Math.PI,
-      set: (bendDegrees) => control.choose({ bendDegrees }),
-    },
     {
       id: "refined-triangles",
       label: "Triangles at most",

@@ -37,6 +37,8 @@ describe("address", () => {
       NO_CHOICE,
       { ...NO_CHOICE, bendDegrees: 7.5 },
       { ...NO_CHOICE, frontIterations: 3, positions: "limit" },
+      { ...NO_CHOICE, radiusPx: 12.5, rules: ["curvature", "size"] },
+      { ...NO_CHOICE, rules: [] },
     ],
     isInsetOn: [null, true, false],
     insetTurn: [

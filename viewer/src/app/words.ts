@@ -46,6 +46,7 @@ export const WORDS = {
   instructions:
     "Arrow keys turn the model, Shift and arrow keys move it, plus and minus zoom, F shows all of it. H opens help.",
   triangles: "triangles",
+  faces: "faces",
   loadedOf: (bytes: string, all: string) => `${bytes} of ${all}`,
   received: "received",
   error: "error",
@@ -57,6 +58,15 @@ export const SCHEME_NAMES = {
   sqrt3: "√3 subdivision",
   loop: "Loop subdivision as an RGB triangulation",
   butterfly: "Modified butterfly subdivision as an RGB triangulation",
+  "catmull-clark": "The Catmull-Clark surface",
+} as const;
+
+/** By which patches get their depth. */
+export const RULE_NAMES = {
+  curvature: "Deeper where the surface bends",
+  backs: "Backs not subdivided",
+  silhouettes: "Silhouettes deeper",
+  size: "By how large they look",
 } as const;
 
 /** Rows of the help page: what to do, with the mouse, by touch, by keys. */

@@ -45,6 +45,33 @@ describe("a control mesh's header", () => {
     expect(info.origin).toEqual(columns.map((c) => 0.5 * Math.min(...c) + 0.5 * Math.max(...c)));
   });
 
+  it("is, in the golden file of polygons, what was written", () => {
+    const golden = new URL("../../../spec/golden/", import.meta.url);
+    const file = new Uint8Array(readFileSync(new URL("cage_polygons.fov", golden)));
+    const { positions, starts, up, depths, budget, rate } = JSON.parse(
+      readFileSync(new URL("cage_polygons.json", golden), "utf8"),
+    );
+    const head = file.subarray(0, headLength(file, "a.fov"));
+    const { header } = parseContainer(head, "a.fov", file.length);
+    const info = parseCage(header, "a.fov");
+    expect(info).toMatchObject({ up, vertices: positions.length, polygons: starts.length - 1 });
+    expect(info.refinement).toMatchObject({ scheme: "catmull-clark", depths, budget, rate });
+    for (const faces of [undefined, 0, 1.5, "7", null]) {
+      expect(() => parseCage({ ...header, faces }, "a.fov")).toThrow("a.fov");
+    }
+  });
+
+  it("has the usual depths where it says none that make sense", () => {
+    const { depths } = parseCage({ ...HEADER, scheme: "catmull-clark" }, "a.fov").refinement;
+    expect(depths).toMatchObject({ most: 5, cone_degrees: 8, size_px: [3, 24] });
+    const odd = { most: 99, cone_degrees: "8", backs: 0, silhouettes: null, epsilon: -1, size_px: [3, 5] };
+    for (const wrong of [odd, 3, null, "most"]) {
+      expect(refinementOf({ depths: wrong }, "scene.json").depths).toEqual(depths);
+    }
+    const none = refinementOf({ depths: { cone_degrees: null, size_px: null, backs: false } }, "scene.json");
+    expect(none.depths).toEqual({ ...depths, cone_degrees: null, size_px: null, backs: false });
+  });
+
   it("has its sharp edges, which are pairs of vertices", () => {
     expect(parseCage({ ...HEADER, sharp_edges: [0, 1, 3, 2] }, "a.fov").sharpEdges).toEqual([0, 1, 3, 2]);
     for (const wrong of [[0], [0, 4], [-1, 0], [0, 1.5], "01", null, [[0, 1]]]) {
@@ -67,7 +94,7 @@ describe("a control mesh's header", () => {
   });
 
   it("is refused with a sentence where it is of another version or damaged", () => {
-    expect(() => parseCage({ ...HEADER, version: 2 }, "a.fov")).toThrow(/^a.fov has version 2/);
+    expect(() => parseCage({ ...HEADER, version: 3 }, "a.fov")).toThrow(/^a.fov has version 3/);
     expect(() => parseCage({ ...HEADER, scheme: "doo" }, "a.fov")).toThrow(/^a.fov is refined by "doo"/);
     for (const key of ["origin", "box", "vertices", "triangles"]) {
       for (const value of [undefined, null, 3.5, "x", [1, 2], [[1, 2, 3]], [1, 2, Number.NaN]]) {

@@ -4,9 +4,12 @@ import type { Axis, Triple } from "./graph";
 import { Problem } from "./problem";
 
 export const CAGE = "cage";
-const VERSION = 1;
+/** Triangles, and polygons with creases. */
+const TRIANGLES = 1;
+const POLYGONS = 2;
 
-export const SCHEMES = ["sqrt3", "loop", "butterfly"] as const;
+export const CATMULL_CLARK = "catmull-clark";
+export const SCHEMES = ["sqrt3", "loop", "butterfly", CATMULL_CLARK] as const;
 export type Scheme = (typeof SCHEMES)[number];
 
 export const POSITIONS = ["control", "limit"] as const;
@@ -25,10 +28,24 @@ export interface RegionLimits {
 export const REGIONS = ["front", "silhouette", "back"] as const;
 export type Criteria = Readonly<Record<(typeof REGIONS)[number], RegionLimits>>;
 
+/** By which rules Catmull-Clark patches get their depth; keys as in files and on the wire. */
+export interface DepthRules {
+  readonly most: number;
+  /** Null to leave out what the surface bends. */
+  readonly cone_degrees: number | null;
+  readonly backs: boolean;
+  readonly silhouettes: boolean;
+  readonly epsilon: number;
+  /** Least and greatest radius of a piece of a patch; null to leave out how large it looks. */
+  readonly size_px: readonly [number, number] | null;
+}
+
 /** How a control mesh is refined. */
 export interface Refinement {
   readonly scheme: Scheme;
+  /** They say nothing of `catmull-clark`, which has `depths`. */
   readonly criteria: Criteria;
+  readonly depths: DepthRules;
   readonly positions: Positions;
   /** Triangles at most, 0 for no limit. */
   readonly budget: number;
@@ -47,8 +64,12 @@ export interface CageInfo {
   readonly vertices: number;
   /** Two vertices each of the edges that stay sharp. */
   readonly sharpEdges: readonly number[];
+  /** How many there are, in a file of polygons. */
+  readonly polygons: number | undefined;
   readonly refinement: Refinement;
 }
+
+export const MOST_DEPTH = 8;
 
 const INITIAL: Refinement = {
   scheme: "sqrt3",
@@ -57,6 +78,7 @@ const INITIAL: Refinement = {
     silhouette: { iterations: 6, edge_px: 4, bend: 0 },
     back: { iterations: 0, edge_px: 0, bend: 0 },
   },
+  depths: { most: 5, cone_degrees: 8, backs: true, silhouettes: true, epsilon: 0.1, size_px: [3, 24] },
   positions: "control",
   budget: 0,
   rate: 0,
@@ -64,16 +86,19 @@ const INITIAL: Refinement = {
 
 /** @throws Problem if the version is not known, or a value that is needed makes no sense. */
 export function parseCage(header: Header, name: string): CageInfo {
-  if (header.version !== VERSION) {
+  const hasPolygons = header.version === POLYGONS;
+  if (header.version !== TRIANGLES && !hasPolygons) {
+    const known = `${TRIANGLES} and ${POLYGONS}`;
     throw new Problem(
       "version",
-      `${name} has version ${String(header.version)} of kind "${CAGE}"; this viewer knows version ${VERSION}. Update foveal, or build the file again.`,
+      `${name} has version ${String(header.version)} of kind "${CAGE}"; this viewer knows version ${known}. Update foveal, or build the file again.`,
     );
   }
   const { origin, box, up, triangles, vertices, sharp_edges: sharpEdges = [] } = header;
   const isBox = Array.isArray(box) && box.length === 2 && box.every(isTriple);
   if (!isTriple(origin) || !isBox || !isCount(triangles) || !isCount(vertices)) throw damaged(name);
   if (!areEdges(sharpEdges, vertices)) throw damaged(name);
+  if (hasPolygons && !isCount(header.faces)) throw damaged(name);
   return {
     origin,
     box: box as unknown as [Triple, Triple],
@@ -81,6 +106,7 @@ export function parseCage(header: Header, name: string): CageInfo {
     triangles,
     vertices,
     sharpEdges,
+    polygons: hasPolygons ? (header.faces as number) : undefined,
     refinement: refinementOf(header, name),
   };
 }
@@ -107,6 +133,7 @@ export function refinementOf(data: Header, name: string, base: Refinement = INIT
       silhouette: limitsOf(criteria.silhouette, base.criteria.silhouette),
       back: limitsOf(criteria.back, base.criteria.back),
     },
+    depths: depthsOf(data.depths, base.depths),
     positions: POSITIONS.find((known) => known === data.positions) ?? base.positions,
     budget: within(data.budget, 0, 2 ** 32 - 1) ?? base.budget,
     rate: within(data.rate, 0, 1000) ?? base.rate,
@@ -121,6 +148,27 @@ function limitsOf(data: unknown, base: RegionLimits): RegionLimits {
     edge_px: within(data.edge_px, 0, 1e6) ?? base.edge_px,
     bend: degrees === null ? base.bend : (degrees * Math.PI) / 180,
   };
+}
+
+function depthsOf(data: unknown, base: DepthRules): DepthRules {
+  if (!isObject(data)) return base;
+  const isSwitch = (value: unknown, own: boolean): boolean => (typeof value === "boolean" ? value : own);
+  const { cone_degrees: cone, size_px: size } = data;
+  return {
+    most: Math.round(within(data.most, 0, MOST_DEPTH) ?? base.most),
+    cone_degrees: cone === null ? null : (within(cone, 0, 180) ?? base.cone_degrees),
+    backs: isSwitch(data.backs, base.backs),
+    silhouettes: isSwitch(data.silhouettes, base.silhouettes),
+    epsilon: within(data.epsilon, 0, 1) ?? base.epsilon,
+    size_px: size === null ? null : isRange(size) ? size : base.size_px,
+  };
+}
+
+/** Two radii, of which the second is twice the first, at least. */
+function isRange(value: unknown): value is [number, number] {
+  if (!Array.isArray(value) || value.length !== 2) return false;
+  const [least, most] = value.map((radius) => within(radius, 0, 1e9));
+  return typeof least === "number" && typeof most === "number" && 2 * least <= most;
 }
 
 function within(value: unknown, low: number, high: number): number | null {

@@ -48,6 +48,7 @@ describe("the golden session", () => {
         triangles,
         milliseconds,
         threshold,
+        hasNormals: ((head.flags as number) & 4) !== 0,
       });
       slots.apply(message);
       expect([...slots.faces.subarray(0, 3 * slots.faceCount)]).toEqual(faces.flat());
@@ -95,6 +96,18 @@ describe("a live session's messages", () => {
     expect([...changes.born]).toEqual([4]);
     expect([...changes.moved]).toEqual([1]);
     expect([...changes.faces]).toEqual([]);
+  });
+
+  it("have normals in place of starts, which only a fresh message may change", () => {
+    const slots = new SlotBuffers();
+    slots.apply(parseMessage(freshMessage(SPLIT, 1, { flags: 7 })));
+    expect(slots.hasNormals).toBe(true);
+    slots.apply(parseMessage(nextMessage(SPLIT, SPLIT, 2, { flags: 7 })));
+    expect(() => slots.apply(parseMessage(nextMessage(SPLIT, SPLIT, 3, { flags: 3 })))).toThrow(Gap);
+    expect(slots.hasNormals).toBe(true);
+    slots.apply(parseMessage(freshMessage(SPLIT, 3)));
+    expect(slots.hasNormals).toBe(false);
+    expect(() => parseMessage(freshMessage(SPLIT, 1, { flags: 8 }))).toThrow(/its flags/);
   });
 
   it("tell faces of which only the level changed", () => {

@@ -15,6 +15,7 @@ const HEAD_BYTES = 40;
 const RANGE_BYTES = 12;
 const SETTLED = 1;
 const LIMITS = 2;
+const NORMALS = 4;
 /** Slots at most: faces and tags of so many take 110 MB, and no page draws more. */
 const MAX_SLOTS = 1 << 23;
 const ARRAYS = 4;
@@ -39,6 +40,8 @@ export interface WireMessage {
   /** Sequence it builds on, 0 for nothing. */
   readonly base: number;
   readonly isSettled: boolean;
+  /** The third array is of normals, and nothing is to be blended. */
+  readonly hasNormals: boolean;
   readonly faces: number;
   readonly vertices: number;
   /** Triangles in use. */
@@ -79,6 +82,7 @@ export function parseMessage(data: ArrayBuffer): WireMessage {
     sequence: sequence!,
     base: base!,
     isSettled: (flags! & SETTLED) !== 0,
+    hasNormals: (flags! & NORMALS) !== 0,
     faces: faces!,
     vertices: vertices!,
     triangles: triangles!,
@@ -86,7 +90,7 @@ export function parseMessage(data: ArrayBuffer): WireMessage {
     threshold,
     ranges: rangesOf(data, words, ranges!, sizesOf(faces!, vertices!)),
   };
-  if ((flags! & ~(SETTLED | LIMITS)) !== 0) throw damaged("its flags");
+  if ((flags! & ~(SETTLED | LIMITS | NORMALS)) !== 0) throw damaged("its flags");
   checkValues(message);
   return message;
 }
@@ -147,7 +151,9 @@ export class SlotBuffers {
   /** Three vertices a slot; (0, 0, 0) is free. */
   faces = new Uint32Array(0);
   positions = new Float32Array(0);
+  /** Where vertices were born, or their normals. */
   starts = new Float32Array(0);
+  hasNormals = false;
   tags = new Uint8Array(0);
 
   /** Forget all; the next message must begin from nothing. */
@@ -165,9 +171,11 @@ export class SlotBuffers {
    */
   apply(message: WireMessage): SlotChanges {
     const isFresh = message.base === 0;
-    const hasShrunk = message.faces < this.faceCount || message.vertices < this.vertexCount;
+    const isOther = message.hasNormals !== this.hasNormals;
+    const hasShrunk = isOther || message.faces < this.faceCount || message.vertices < this.vertexCount;
     if (!isFresh && (message.base !== this.sequence || hasShrunk)) throw new Gap();
     if (isFresh) this.reset();
+    this.hasNormals = message.hasNormals;
     this.#grow(message);
     const changes = isFresh ? NOTHING : this.#compare(message);
     this.#arrays.forEach((array, i) => {

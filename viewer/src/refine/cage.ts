@@ -1,5 +1,6 @@
 /** An opened control mesh: what its file says, and who refines it. */
-import { type CageInfo, parseCage, type Refinement, refinementOf } from "../format/cage";
+import { CATMULL_CLARK, type CageInfo, parseCage, type Refinement, refinementOf } from "../format/cage";
+import { Problem } from "../format/problem";
 import type { OpenFile } from "../stream/file";
 import type { RefinementSource } from "../stream/refinement";
 import { openRefinement } from "./openRefinement";
@@ -24,6 +25,12 @@ export async function openCage(
 ): Promise<Cage> {
   const info = parseCage(file.container.header, file.source.name);
   const refinement = refinementOf(layer, "scene.json", info.refinement);
+  if (info.polygons !== undefined && refinement.scheme !== CATMULL_CLARK) {
+    throw new Problem(
+      "version",
+      `${file.source.name} holds polygons, which ${refinement.scheme} does not know. Build it again by that scheme, or let scene.json say ${CATMULL_CLARK}.`,
+    );
+  }
   const source = await openRefinement(file, info, refinement.scheme, live);
   return { file, info, refinement, source };
 }

@@ -116,6 +116,28 @@ describe("normals of slots", () => {
   });
 });
 
+describe("normals that are sent", () => {
+  it("are drawn as they are, where they are, at once", () => {
+    const next = random(9);
+    const slots = new SlotBuffers();
+    const blend = new SlotBlend();
+    let now = randomSlots(next, 30, 20);
+    let done = step(slots, freshMessage(now, 1, { flags: 7 }));
+    for (let n = 2; n < 30; n++) {
+      blend.update(slots, done.old, done.changes, n);
+      expect(blend.isMoving(n)).toBe(false);
+      const used = 3 * slots.vertexCount;
+      for (const points of [blend.position, blend.from])
+        expect(points.subarray(0, used)).toEqual(slots.positions.subarray(0, used));
+      for (const normals of [blend.normal, blend.fromNormal])
+        expect(normals.subarray(0, used)).toEqual(slots.starts.subarray(0, used));
+      const before = now;
+      now = changed(next, before);
+      done = step(slots, nextMessage(before, now, n, { flags: 7 }));
+    }
+  });
+});
+
 describe("blending", () => {
   function started(): { slots: SlotBuffers; blend: SlotBlend } {
     const slots = new SlotBuffers();

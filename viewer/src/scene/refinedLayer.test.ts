@@ -14,6 +14,7 @@ const LIMITS = { iterations: 4, edge_px: 8, bend: 0.1 };
 const REFINEMENT: Refinement = {
   scheme: "sqrt3",
   criteria: { front: LIMITS, silhouette: LIMITS, back: LIMITS },
+  depths: { most: 4, cone_degrees: null, backs: true, silhouettes: false, epsilon: 0.1, size_px: [2, 9] },
   positions: "limit",
   budget: 5000,
   rate: 30,

@@ -1,6 +1,6 @@
 /** A layer that is refined for the camera by somebody else: it says what it wants, and draws the slots it is given. */
 import { type Camera, Group, type Material, type PerspectiveCamera } from "three";
-import type { Refinement } from "../format/cage";
+import { CATMULL_CLARK, type Refinement } from "../format/cage";
 import type { Triple } from "../format/graph";
 import type { Problem } from "../format/problem";
 import type { RefinementFigures, RefinementSource } from "../stream/refinement";
@@ -108,11 +108,12 @@ export class RefinedLayer implements Layer {
   }
 
   choose(camera: PerspectiveCamera, height: number, _errorPx: number, allowed: Cost): Cost {
-    const { criteria, positions, budget, rate } = this.wants;
+    const { scheme, criteria, depths, positions, budget, rate } = this.wants;
     this.asset.source.request(
       {
         camera: this.#place.cameraOf(camera, height),
         criteria,
+        ...(scheme === CATMULL_CLARK ? { depths } : {}),
         budget: Math.max(1, Math.floor(Math.min(budget || Infinity, allowed.triangles))),
         positions,
         rate,

@@ -46,7 +46,16 @@ export class SlotBlend {
     const hasGrown = this.#grow(slots.vertexCount);
     this.#normals.update(slots, oldFaces, changes);
     const { marks, values } = this.#normals;
-    const { position, normal, since } = this;
+    const { position, from, normal, fromNormal, since } = this;
+    if (slots.hasNormals) {
+      for (let v = 0; v < slots.vertexCount; v++) {
+        if (!marks[v]) continue;
+        for (const out of [position, from]) copy3(slots.positions, out, 3 * v);
+        for (const out of [normal, fromNormal]) copy3(values, out, 3 * v);
+        since[v] = LONG_AGO;
+      }
+      return hasGrown;
+    }
     for (let v = 0; v < slots.vertexCount; v++) {
       if (marks[v]) this.#begin(v, now);
     }

@@ -1,5 +1,6 @@
 /**
- * Normals of the vertices of slot buffers, weighted by the areas of their faces, kept up by what changed.
+ * Normals of the vertices of slot buffers: those that were sent, or else weighted by the areas of their faces and
+ * kept up by what changed.
  *
  * A vertex's sum is made anew, face by face in the order of the slots, where any of its faces changed or moved, and
  * only there: so what is kept up is, bit for bit, what would be computed from nothing, and nothing drifts.
@@ -28,6 +29,11 @@ export class SlotNormals {
     this.#grow(slots.vertexCount);
     const { marks } = this;
     marks.fill(changes.isFresh ? DIRTY : 0);
+    if (slots.hasNormals) {
+      for (const list of [changes.moved, changes.born]) for (const v of list) marks[v] = DIRTY;
+      this.values.set(slots.starts.subarray(0, 3 * slots.vertexCount));
+      return;
+    }
     if (!changes.isFresh) this.#mark(slots, oldFaces, changes);
     for (const v of changes.born) normalise(this.first, 3 * v);
     this.#sum(slots);

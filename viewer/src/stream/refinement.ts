@@ -5,7 +5,7 @@
  * the slot buffers. Who computes is behind this interface: a server by a WebSocket (`live.ts`), or, where a scene
  * is static files, the page itself.
  */
-import type { Criteria, Positions } from "../format/cage";
+import type { Criteria, DepthRules, Positions } from "../format/cage";
 import type { Triple } from "../format/graph";
 import type { Problem } from "../format/problem";
 import type { SlotBuffers, SlotChanges } from "../format/wire";
@@ -26,6 +26,8 @@ export interface WireCamera {
 export interface Wish {
   readonly camera: WireCamera;
   readonly criteria: Criteria;
+  /** Of `catmull-clark` alone. */
+  readonly depths?: DepthRules;
   /** Triangles at most, 0 for no limit. */
   readonly budget: number;
   readonly positions: Positions;

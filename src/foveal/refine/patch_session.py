@@ -1,0 +1,133 @@
+"""A live tessellation of Catmull-Clark patches: follows the camera of one page, and says what changed."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from foveal.mesh.poly_shapes import cube
+from foveal.mesh.polymesh import PolyMesh
+from foveal.view.camera import Camera
+
+from .dialogue import MOST_TRIANGLES, Dialogue, origin_of
+from .slates import Slates
+from .slates_depth import Depths
+from .slates_rate import FrameRate
+from .slates_result import SlateArrays
+from .wire import Buffers, Request
+
+__all__ = ["PatchSession", "patch_buffers", "warm_patches"]
+
+# Points are kept as deep as they were ever wanted, for all that a page ever looked at. From here on they are
+# forgotten, and all is sent anew: 72 MB.
+_MOST_ROWS = 3_000_000
+
+
+class PatchSession(Dialogue):
+    """A tessellation of one control mesh for one page, at limit points with limit normals.
+
+    Parameters
+    ----------
+    mesh : PolyMesh
+        An oriented surface.
+    name : str
+        What errors call the mesh.
+    clock : function
+        Gives seconds; for tests.
+
+    Raises
+    ------
+    FovealError
+        If the mesh is no oriented surface, or too large for float32.
+
+    Examples
+    --------
+    >>> session = PatchSession(cube())
+    >>> session.answer() is None  # nobody asked
+    True
+    """
+
+    has_normals = True
+
+    def __init__(
+        self,
+        mesh: PolyMesh,
+        /,
+        *,
+        name: str = "mesh",
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        super().__init__(clock)
+        checked = mesh.checked(name)
+        self.origin = origin_of(checked, name)
+        # About its own middle, so that rows are what is sent.
+        self._mesh, self._name = replace(checked, positions=checked.positions - self.origin), name
+        self._surface = self._begun()
+        self._most_rows = _MOST_ROWS
+        self._rate: tuple[float, FrameRate] | None = None
+
+    def _begun(self) -> Slates:
+        return Slates(self._mesh, dtype=np.float32, name=self._name)
+
+    @property
+    def _is_settled(self) -> bool:
+        return self._last is not None  # each update brings all
+
+    def _refine(self, request: Request, begin: float, *, is_new: bool) -> None:
+        if len(self._surface.arrays().positions) > self._most_rows:
+            self._surface = self._begun()
+            self._most_rows = 0
+        camera = request.camera
+        moved = replace(camera, position=camera.position - self.origin, target=camera.target - self.origin)
+        done = self._surface.update(moved, depths=request.depths, budget=self._budget(request))
+        if self._most_rows == 0:  # what one view needs may be more already
+            self._most_rows = max(_MOST_ROWS, 2 * len(self._surface.arrays().positions))
+        self._last, self._triangles = request, done.triangles
+
+    def _budget(self, request: Request) -> int:
+        """Triangles at most: what was asked for, what we allow, and what keeps to the rate."""
+        allowed = min(request.budget or MOST_TRIANGLES, MOST_TRIANGLES)
+        if not request.rate:
+            self._rate = None
+            return allowed
+        if self._rate is None or self._rate[0] != request.rate:
+            least = 2 * self._surface.patches
+            self._rate = request.rate, FrameRate(request.rate, least=least, most=MOST_TRIANGLES)
+        return min(allowed, self._rate[1].budget)
+
+    def _spent(self, request: Request, milliseconds: float) -> None:
+        if self._rate is not None:
+            self._rate[1].tell(milliseconds + request.drawn_ms, self._triangles)
+
+    def _buffers(self, request: Request) -> Buffers:
+        return patch_buffers(self._surface.arrays())
+
+
+def patch_buffers(arrays: SlateArrays, /) -> Buffers:
+    """What a page is to have, of copies: normals where starts are, depths as levels."""
+    positions, normals = (
+        array.astype("<f4", copy=True).reshape(-1).view(np.uint32)
+        for array in (arrays.positions, arrays.normals)
+    )
+    tags = np.zeros(-(-len(arrays.faces) // 4) * 4, np.uint8)
+    counts, depths = arrays.counts.reshape(-1), arrays.depths.reshape(-1)
+    tags[_rows(arrays.first.reshape(-1), counts)] = np.repeat(depths.astype(np.uint8), counts)
+    faces = arrays.faces.astype("<i4", copy=True).reshape(-1).view(np.uint32)
+    return Buffers(faces, positions, normals, tags.view(np.uint32))
+
+
+def _rows(first: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """first[i], first[i] + 1, .. counts[i] of them, one run after the other."""
+    ends = np.cumsum(counts)
+    return np.repeat(first - ends + counts, counts) + np.arange(counts.sum())
+
+
+def warm_patches() -> None:
+    """Compile what a session runs, or load it, so that no page waits for it."""
+    surface = Slates(cube(), dtype=np.float32)
+    camera = Camera.of([3, 4, 5], [0, 0, 0])
+    for budget in (200, 2000):
+        surface.update(camera, depths=Depths(), budget=budget)
+    patch_buffers(surface.arrays())

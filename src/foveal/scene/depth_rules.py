@@ -1,0 +1,69 @@
+"""The depth rules of Catmull-Clark patches: chosen in Python or at the command line."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from foveal.base.errors import FovealError
+
+if TYPE_CHECKING:
+    from foveal.refine.slates_depth import Depths
+
+__all__ = ["CATMULL_CLARK", "RULES", "depths_with"]
+
+CATMULL_CLARK = "catmull-clark"
+
+RULES: Mapping[str, Mapping[str, Any]] = {
+    "curvature": {"cone": None},
+    "backs": {"backs": False},
+    "silhouettes": {"silhouettes": False},
+    "size": {"size_px": None},
+}
+"""What leaves each rule out."""
+
+_OF_CRITERIA = {"iterations": "most", "bend": "cone"}  # of front faces: they mean the same of patches
+
+
+def depths_with(base: "Depths | None", options: Mapping[str, Any], /) -> "Depths":
+    """Depth rules with what `RefineOptions` choose: `depths`, and of `criteria` what patches know.
+
+    The iterations of front faces are the maximum depth, their bend is the cone's angle, 0 for no cone.
+
+    Raises
+    ------
+    FovealError
+        If the options choose what patches do not have, or rules that do not hold together.
+
+    Examples
+    --------
+    >>> depths_with(None, {"criteria": {"front": {"iterations": 3, "bend": 0}}, "depths": {"backs": False}})
+    Depths(most=3, cone=None, backs=False, silhouettes=True, epsilon=0.1, size_px=(3.0, 24.0))
+    """
+    from foveal.refine.slates_depth import Depths
+
+    if options.get("positions") == "control":
+        raise FovealError(f"{CATMULL_CLARK} shows points of the limit surface only. Leave positions out.")
+    if options.get("sharp_edges") is not None:
+        raise FovealError(f"{CATMULL_CLARK} keeps the creases of the file. Leave sharp_edges out.")
+    given = options.get("depths")
+    if isinstance(given, Depths):
+        base, given = given, None
+    changes = {**_of_criteria(options.get("criteria")), **(given or {})}
+    try:
+        return replace(base or Depths(), **changes)
+    except ValueError as error:
+        raise FovealError(f"These rules of depth do not hold: {error}. Correct them.") from error
+
+
+def _of_criteria(criteria: Any) -> dict[str, Any]:
+    if criteria is None:
+        return {}
+    front = criteria.get("front", {}) if isinstance(criteria, Mapping) else {}
+    is_known = isinstance(criteria, Mapping) and not criteria.keys() - {"front"}
+    if not is_known or front.keys() - _OF_CRITERIA.keys():
+        raise FovealError(
+            f"{CATMULL_CLARK} knows iterations and bend, but no length of edges, and no numbers apart for "
+            "silhouettes and back faces. Choose depths instead: a range of radii, rules to leave out."
+        )
+    found = {_OF_CRITERIA[key]: value for key, value in front.items()}
+    return {**found, "cone": found["cone"] or None} if "cone" in found else found
