@@ -16,11 +16,13 @@ SOURCES = Path(__file__).parent / "refine_peers"
 LIBRARIES = {
     "far_loop": ("-losdCPU",),
     "bfr_loop": ("-losdCPU",),
+    "bfr_catmark": ("-losdCPU",),
     "openmesh_sqrt3": ("-lOpenMeshTools", "-lOpenMeshCore"),
 }
 HEADERS = {
     "far_loop": ("OpenSubdiv", "opensubdiv/far/primvarRefiner.h"),
     "bfr_loop": ("OpenSubdiv 3.5", "opensubdiv/bfr/tessellation.h"),
+    "bfr_catmark": ("OpenSubdiv 3.5", "opensubdiv/bfr/tessellation.h"),
     "openmesh_sqrt3": ("OpenMesh", "OpenMesh/Tools/Subdivider/Adaptive/Composite/RulesT.hh"),
 }
 

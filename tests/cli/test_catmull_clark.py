@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from cli.test_refine import _Server, result
+from cli.stand_in import Server
+from cli.test_refine import result
 from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import icosphere
 from foveal.refine.slates import Slates
@@ -120,7 +121,7 @@ def test_build_info_check_export_render_publish(run, cage, tmp_path, viewer):
 
 def test_view_takes_it(run, cage, monkeypatch, viewer):
     served = []
-    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: served.append(scene) or _Server())
+    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: served.append(scene) or Server())
     words = (*SCHEME, "--rate", "25", "--budget", "700", "--radius-px", "1", "5", "--no-browser")
     assert run("view", cage, *words).exit_code == 0
     layer = served[0].layers[0]

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from cli.stand_in import Server
 from foveal import multires
 from foveal.mesh.io import read_mesh
 
@@ -138,21 +139,6 @@ def test_publish(run, ball, tmp_path, monkeypatch):
     assert run("publish", ball, "-o", tmp_path / "site").exit_code == 1
     assert run("publish", tmp_path / "site" / "scene.json", "-o", tmp_path / "again").exit_code == 0
     assert run("info", tmp_path / "again" / "scene.json").exit_code == 0
-
-
-class Server:
-    """Stands in for one that runs."""
-
-    url = "http://here/"
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def wait(self):
-        pass
 
 
 @pytest.mark.parametrize("words", [["view"], []])

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import pytest
 
+from cli.stand_in import Server
 from foveal import TriMesh
 from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere
@@ -31,21 +32,6 @@ def viewer(tmp_path, monkeypatch):
     folder.mkdir()
     (folder / "index.html").write_text("<!doctype html>")
     monkeypatch.setattr("foveal.scene.viewer_files._BUILT", folder)
-
-
-class _Server:
-    """Serves nothing, and is told at once to end."""
-
-    url = "http://here/"
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def wait(self):
-        pass
 
 
 def result(answer):
@@ -133,7 +119,7 @@ def test_a_criterion_leaves_the_others_as_the_file_has_them(run, cage, tmp_path,
 def test_what_is_inside_out_is_told_once(run, tmp_path, monkeypatch, viewer):
     ball, path = icosphere(1), tmp_path / "cave.ply"
     write_ply(TriMesh(ball.positions, ball.faces[:, ::-1].copy()), path)
-    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: _Server())
+    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: Server())
     fov = tmp_path / "cave.fov"
     for words in (
         ("build", path, "-o", fov, "--scheme", "sqrt3"),
@@ -155,7 +141,7 @@ def test_what_is_inside_out_is_told_once(run, tmp_path, monkeypatch, viewer):
 
 def test_sharp_edges(run, tmp_path, monkeypatch, viewer):
     served = []
-    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: served.append(scene) or _Server())
+    monkeypatch.setattr("foveal.server.view.start", lambda scene, **_: served.append(scene) or Server())
     path, fov = tmp_path / "cube.ply", tmp_path / "cube.fov"
     write_ply(cube()[0], path)
     words = ("--scheme", "sqrt3", "--sharp-edges", "60")
@@ -214,7 +200,7 @@ def test_view_and_publish_take_them(run, cage, tmp_path, monkeypatch, viewer):
 
     def start(scene, **_):
         served.append(scene.layers[0].refinement)
-        return _Server()
+        return Server()
 
     monkeypatch.setattr("foveal.server.view.start", start)
     words = ("--scheme", "sqrt3", "--budget", "700", "--rate", "30", "--no-browser")
