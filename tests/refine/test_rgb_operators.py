@@ -24,7 +24,7 @@ SURFACES = {
 }
 COLOURS = ("green", "red", "red", "blue")
 DEPTH = 4
-NOTHING = 0.0, np.zeros(24), np.zeros((3, 3)), 0.0  # a view and limits for which no edge is wanted
+NOTHING = 0, np.zeros(24), np.zeros((3, 3)), (0, 1.0)  # a view and limits for which no edge is wanted
 
 
 class Walk:

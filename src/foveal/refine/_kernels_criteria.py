@@ -35,30 +35,29 @@ def longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz):
 
 @lean
 def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, u, v, w):
-    """(is wanted, slack) of the triangle a, b, c of a level, at vertices u, v, w: whether to split it.
+    """(is wanted, near, far) of the triangle a, b, c of a level, at vertices u, v, w: whether to split it.
 
     In the paper's order: frustum, then facing, then silhouette. A silhouette passes where the triangle and
     the limit surface at its corner face different ways, or would if it bent as much again. Above level 0
     only the first corner's normal is asked: those of the others may not be there yet.
 
-    The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
-    of the frustum has moved by `slack`.
+    For how long the answer stays the same `near` and `far` say as in `_kernels_drift.py`.
     """
     most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
     if level >= most:
-        return False, math.inf
+        return False, math.inf, math.inf
     ux, uy, uz = bx - ax, by - ay, bz - az
     vx, vy, vz = cx - ax, cy - ay, cz - az
     longest = longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)
     x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
     dx, dy, dz = view[EYE] - x, view[EYE + 1] - y, view[EYE + 2] - z
     away = math.sqrt(dx * dx + dy * dy + dz * dz)
-    slack = math.inf
+    near = math.inf
     for i in range(PLANES, PLANES + 20, 4):
         inside = view[i] * x + view[i + 1] * y + view[i + 2] * z + view[i + 3] + BALL * longest
         if inside < 0.0:
-            return False, trusted(-inside, away)
-        slack = min(slack, inside)
+            return False, trusted(-inside, away), math.inf
+        near = min(near, inside)
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     length = math.sqrt(nx * nx + ny * ny + nz * nz)
     scale = 1.0 / length if length > 0.0 else 0.0
@@ -76,34 +75,36 @@ def is_wanted(view, limits, level, ax, ay, az, bx, by, bz, cx, cy, cz, normals, 
     spread = math.sqrt(max(2.0 - 2.0 * least, 0.0)) if level > 0 else 2.0
     ease = 1.0 / (1.0 + spread)
     size = view[PIXELS] * longest
-    answer, margin = judge(limits, kind, level, 1.0 - least, size, away, front * ease, back * ease)
-    return answer, trusted(min(slack, margin), away)
+    answer, margin, far = judge(limits, kind, level, 1.0 - least, size, away, front * ease, back * ease)
+    return answer, trusted(min(near, margin), away), trusted(far, away)
 
 
 @lean
 def judge(limits, kind, level, bend, size, away, front, back):
-    """(whether a kind's limits ask for more, how far the eye may move before they do not, or do).
+    """(whether a kind's limits ask for more, how far distances, and the eye, may go before that changes).
 
     `front` and `back` say how far the eye is, at least, from where this would be a front or no front any
     more, a back or no back any more. Another kind that says the same is none to beware of: silhouettes become
     fronts as one looks around, but many are fine enough for both, or coarse enough: on an orbit a fourth
     of the answers that had to be given anew were such.
     """
-    answer, margin = is_coarse(limits, kind, level, bend, size, away)
+    answer, near = is_coarse(limits, kind, level, bend, size, away)
+    far = math.inf
     for other in range(3):
         if other == kind:
             continue
         until = -front if other == FRONT else (-back if other == BACK else max(front, back))
         same, beyond = is_coarse(limits, other, level, bend, size, away)
-        if same == answer:
-            until = max(until, beyond)
-        margin = min(margin, until)
-    return answer, margin
+        if same == answer and beyond > until:
+            near = min(near, beyond)
+        else:
+            far = min(far, until)
+    return answer, near, far
 
 
 @lean
 def is_coarse(limits, kind, level, bend, size, away):
-    """(whether a kind's limits ask for more, how far the eye may move before that changes)."""
+    """(whether a kind's limits ask for more, by how much distances may change before that does)."""
     if level >= limits[kind, ITERATIONS] or bend < limits[kind, BEND]:
         return False, math.inf
     if limits[kind, EDGE] <= 0.0:

@@ -1,12 +1,11 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Edges handed out to a function of the user's, and what it answered."""
 
-import math
-
 import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import NEVER
 from ._kernels_rgb_address import LEVELS, middle_key, slot_of
 from ._kernels_rgb_criteria import is_asked
 from ._kernels_rgb_known import ASK_BORN
@@ -21,8 +20,11 @@ from ._kernels_rgb_layout import (
     find_edge,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
-from ._kernels_rgb_update import force, has_room, is_from_here
+from ._kernels_rgb_update import UNTOLD, force, has_room, is_from_here
 from ._kernels_rgb_wanted import reconsider
+
+#: There is no view.
+NO_DRIFT = (0, 1.0)
 
 
 @lean
@@ -58,7 +60,7 @@ def set_meets(net, order, answers):
         v = order[i]
         vertex = net.vertices[v]
         vertex.flags = (vertex.flags | MEETS) if answers[i] else (vertex.flags & ~MEETS)
-        vertex.until = math.inf
+        vertex.until = NEVER
         reconsider(net, np.int64(v))
 
 
@@ -72,9 +74,9 @@ def candidates(net, pairs, ends, levels, middles):
         if face.code == FREE_CODE:
             continue
         for k in range(3):
-            if face.until[k] == math.inf:
+            if face.until[k] == NEVER:
                 continue
-            face.until[k] = math.inf
+            face.until[k] = NEVER
             level = edge_level(face.code, k)
             if level == NONE or level >= LEVELS or not is_from_here(face, k):
                 continue
@@ -92,6 +94,6 @@ def split_pairs(net, pairs, begin, view, limits):
     """Split these edges from the begin-th on, unless something forced that; where slots ran out."""
     for i in range(begin, len(pairs)):
         h = find_edge(net, np.int64(pairs[i, 0]), np.int64(pairs[i, 1]))
-        if h != NONE and not force(net, h // 3, h % 3, 0.0, view, limits, -1.0):
+        if h != NONE and not force(net, h // 3, h % 3, UNTOLD, view, limits, NO_DRIFT):
             return i
     return len(pairs)

@@ -60,14 +60,13 @@ def spread_of(net, a, b, level):
 
 @lean
 def wants_edge(net, a, b, level, view, limits):
-    """(is wanted, slack) of the edge a, b of a level, whatever its parents are.
+    """(is wanted, near, far) of the edge a, b of a level, whatever its parents are.
 
-    The answer stays the same as long as neither the eye nor, as seen from any point of the surface, a plane
-    of the frustum has moved by `slack`.
+    For how long the answer stays the same `near` and `far` say as in `_kernels_drift.py`.
     """
     most = max(limits[FRONT, ITERATIONS], max(limits[SILHOUETTE, ITERATIONS], limits[BACK, ITERATIONS]))
     if level >= min(most, LEVELS):
-        return False, math.inf
+        return False, math.inf, math.inf
     ensure_at(net, a, level)
     ensure_at(net, b, level)
     ax, ay, az = position(net, a, level)
@@ -76,18 +75,18 @@ def wants_edge(net, a, b, level, view, limits):
     ux, uy, uz = bx - ax, by - ay, bz - az
     length = math.sqrt(ux * ux + uy * uy + uz * uz)
     dx, dy, dz = view[EYE] - x, view[EYE + 1] - y, view[EYE + 2] - z
-    far = math.sqrt(dx * dx + dy * dy + dz * dz)
-    slack = math.inf
+    away = math.sqrt(dx * dx + dy * dy + dz * dz)
+    near = math.inf
     for i in range(PLANES, PLANES + 20, 4):
         inside = view[i] * x + view[i + 1] * y + view[i + 2] * z + view[i + 3] + BALL * length
         if inside < 0.0:
-            return False, trusted(-inside, far)
-        slack = min(slack, inside)
+            return False, trusted(-inside, away), math.inf
+        near = min(near, inside)
     n, m = net.vertices[a].normal, net.vertices[b].normal
     one, two = n[0] * dx + n[1] * dy + n[2] * dz, m[0] * dx + m[1] * dy + m[2] * dz
     spread = spread_of(net, a, b, level)
     # The surface is that much off the edge, too: an eye beneath a coarse edge may yet be above the surface.
-    margin = spread * (far + length)
+    margin = spread * (away + length)
     front, back = min(one, two) - margin, -max(one, two) - margin
     kind = FRONT if front > 0.0 else (BACK if back > 0.0 else SILHOUETTE)
     # 1 - cos of the angle along the edge, and across it of half of what the newest ends have seen.
@@ -95,5 +94,5 @@ def wants_edge(net, a, b, level, view, limits):
     # A facing changes as quickly as the eye moves at most, the margin as quickly as the spread says.
     ease = 1.0 / (1.0 + spread)
     size = view[PIXELS] * length
-    answer, until = judge(limits, kind, level, bend, size, far, front * ease, back * ease)
-    return answer, trusted(min(slack, until), far)
+    answer, margin, far = judge(limits, kind, level, bend, size, away, front * ease, back * ease)
+    return answer, trusted(min(near, margin), away), trusted(far, away)

@@ -10,11 +10,11 @@ edges of level l + 1.
 Based on: E. Puppo. Selectively refinable subdivision meshes. SGP 2006, sections 4 and 7.
 """
 
-import math
-
 import numpy as np
 
 from foveal.base.jit import lean
+
+from ._kernels_drift import EXPIRED, NEVER
 
 NONE = -1
 
@@ -131,16 +131,16 @@ def put(net, f, a, b, c, x, y, z, code):
     face.corners[0], face.corners[1], face.corners[2] = a, b, c
     face.beside[0], face.beside[1], face.beside[2] = x, y, z
     face.code = code
-    face.until[0] = face.until[1] = face.until[2] = 0.0
+    face.until[0] = face.until[1] = face.until[2] = EXPIRED
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f
     enqueue(net, f)
 
 
 @lean
-def know(net, f, k, until, j, other):
+def know(net, f, k, one, j, other):
     """What was known of two edges before they came to be edges k and j of face f."""
     face = net.faces[f]
-    face.until[k], face.until[j] = until, other
+    face.until[k], face.until[j] = one, other
 
 
 @lean
@@ -196,6 +196,6 @@ def ask_face(net, f):
     """The same of a face's."""
     until = net.faces[f].until
     for k in range(3):
-        if until[k] == math.inf:
-            until[k] = 0.0
+        if until[k] == NEVER:
+            until[k] = EXPIRED
             enqueue(net, f)

@@ -3,16 +3,14 @@
 
 What is wanted and what is needed `_kernels_rgb_wanted.py` knows.
 
-Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
-beginning, and `until` says up to which drift an answer holds.
+Answers are kept for as long as `_kernels_drift.py` says; `until` is a word of it.
 """
-
-import math
 
 import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import EXPIRED, NEVER, holds, until
 from ._kernels_rgb_address import middle_key, slot_of
 from ._kernels_rgb_criteria import is_asked, wants_edge
 from ._kernels_rgb_known import ASK_BORN
@@ -48,6 +46,9 @@ from ._kernels_rgb_points import ensure, set_normal
 from ._kernels_rgb_split import opposite, split_topology
 from ._kernels_rgb_wanted import answer, consider_new, need, reconsider
 
+#: Known of an edge to be split: nothing, nor is it to be asked.
+UNTOLD = -1
+
 #: Slots that examining a face may use: forced splits and stencils go down through the levels.
 ROOM = 1024
 
@@ -68,7 +69,7 @@ def split_edge(net, f, k):
         ensure(net, v, ASK_BORN)
     if net.vertices[v].flags & NORMAL == 0:
         set_normal(net, v)
-    vertex.until = 0.0
+    vertex.until = EXPIRED
     split_topology(net, f, k, v)
     need(net, v, 1)
     net.counts[SPLITS] += 1
@@ -101,10 +102,11 @@ def obstacle(net, f, k):
 
 
 @lean
-def force(net, f, k, until, view, limits, drift):
+def force(net, f, k, known, view, limits, drift):
     """Split edge k of face f, and before it whatever has to be; False if there are too few slots left.
 
-    That edge itself is known to be wanted up to a drift of `until`, or not known to be if that is 0.
+    That edge itself is known to be wanted up to the word `known`, or EXPIRED; UNTOLD where nothing of what is
+    split is to be asked, since a function of the user's will be.
     """
     chain = net.counts
     chain[CHAIN], chain[CHAIN + 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
@@ -129,10 +131,10 @@ def force(net, f, k, until, view, limits, drift):
             continue
         v = split_edge(net, g, i)
         depth -= 1
-        if depth == 0 and until > 0.0:
+        if depth == 0 and known > EXPIRED:
             net.vertices[v].flags |= MEETS
-            net.vertices[v].until = until
-        if net.vertices[v].until <= drift:
+            net.vertices[v].until = known
+        if known != UNTOLD and not holds(net.vertices[v].until, drift):
             answer(net, v, view, limits, drift)
         consider_new(net, v)
     return True
@@ -152,7 +154,7 @@ def review(net, begin, view, limits, drift):
     """
     for i in range(max(begin, net.counts[BASE_COUNT]), net.counts[VERTICES]):
         v = np.int64(i)
-        if net.vertices[v].flags & PRESENT == 0 or net.vertices[v].until > drift:
+        if net.vertices[v].flags & PRESENT == 0 or holds(net.vertices[v].until, drift):
             continue
         if not has_room(net):
             return i
@@ -178,7 +180,9 @@ def enqueue_expired(net, drift):
     """Put the faces into the queue of which an edge's answer no longer holds."""
     for f in range(net.counts[FACES]):
         face = net.faces[f]
-        if min(face.until[0], min(face.until[1], face.until[2])) <= drift and face.code != FREE_CODE:
+        if face.code != FREE_CODE and not (
+            holds(face.until[0], drift) and holds(face.until[1], drift) and holds(face.until[2], drift)
+        ):
             enqueue(net, f)
 
 
@@ -205,23 +209,23 @@ def refine(net, view, limits, drift, most_splits, most_faces):
         if face.code == FREE_CODE:
             continue
         for k in range(3):
-            if face.until[k] > drift:
+            if holds(face.until[k], drift):
                 continue
             # So it stays for red edges, for those asked from the other side, and for those that are not
-            # asked: should that change, it becomes 0.
-            face.until[k] = math.inf
+            # asked: should that change, it becomes EXPIRED.
+            face.until[k] = NEVER
             level = edge_level(face.code, k)
             if level == NONE or not is_from_here(face, k):
                 continue
             a, b = np.int64(face.corners[k]), np.int64(face.corners[(k + 1) % 3])
             if not is_asked(net, a, b, level):
                 continue
-            meets, slack = wants_edge(net, a, b, level, view, limits)
+            meets, near, far = wants_edge(net, a, b, level, view, limits)
             if meets:
-                face.until[k] = 0.0
-                if not force(net, f, k, drift + slack, view, limits, drift):
+                face.until[k] = EXPIRED
+                if not force(net, f, k, until(drift, near, far), view, limits, drift):
                     enqueue(net, f)
                     return NO_ROOM
                 break  # the face is another now, and in the queue
-            face.until[k] = drift + slack
+            face.until[k] = until(drift, near, far)
     return DONE

@@ -15,6 +15,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import until
 from ._kernels_rgb_criteria import is_asked, wants_edge
 from ._kernels_rgb_layout import (
     DOUBTFUL,
@@ -32,9 +33,9 @@ def answer(net, v, view, limits, drift):
     """Ask whether the edge that v splits meets the criteria; whether that is news."""
     vertex = net.vertices[v]
     a, b, met = np.int64(vertex.diamond[0]), np.int64(vertex.diamond[1]), net.vertices[v].flags & MEETS
-    meets, slack = wants_edge(net, a, b, np.int64(net.vertices[v].birth) - 1, view, limits)
+    meets, near, far = wants_edge(net, a, b, np.int64(net.vertices[v].birth) - 1, view, limits)
     net.vertices[v].flags = (net.vertices[v].flags | MEETS) if meets else (net.vertices[v].flags & ~MEETS)
-    vertex.until = drift + slack
+    vertex.until = until(drift, near, far)
     return (net.vertices[v].flags & MEETS) != met
 
 

@@ -1,27 +1,23 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
-"""Whether faces of a √3 refinement are wanted split, and up to which drift of the view that holds.
+"""Whether faces of a √3 refinement are wanted split, and up to which word of drift that holds.
 
 `wants` and `wants_triangle` are compiled into their callers: an orbit's answers took a tenth longer else.
 """
-
-import math
 
 import numpy as np
 
 from foveal.base.jit import inlined, lean
 
 from ._kernels_criteria import BALL, THIRD, is_wanted, longest_edge
+from ._kernels_drift import EXPIRED, NEVER, until
 from ._kernels_hidden import BASIS, is_hidden
 from ._kernels_sqrt3_layout import PARENT, WANTED, corner_at, generation, is_half
 from ._kernels_sqrt3_points import position, virtual_apex
 
-#: What rounding a drift to 32 bits may have added is taken away before.
-ROUNDED = 1.0 - 2.0**-22
-
 
 @inlined
 def wants(net, u, v, w, level, view, limits, ax, ay, az, bx, by, bz, cx, cy, cz):
-    """(is wanted, slack) of the face of generation `level` at these vertices and places."""
+    """(is wanted, near, far) of the face of generation `level` at these vertices and places."""
     if len(view) > BASIS:
         x, y, z = (ax + bx + cx) * THIRD, (ay + by + cy) * THIRD, (az + bz + cz) * THIRD
         if is_hidden(view, x, y, z, BALL * longest_edge(ax, ay, az, bx, by, bz, cx, cy, cz)):
@@ -65,19 +61,19 @@ def was_wanted_by_parent(net, v):
 
 @lean
 def examine(net, f, view, limits, drift):
-    """(is wanted, until which drift) of a face. Without a wanted parent: until `wake` is told of one."""
+    """(is wanted, up to which word) of a face. Without a wanted parent: until `wake` is told of one."""
     face = net.faces[f]
     level = generation(face.state)
     u, v, w = face.corners[0], face.corners[1], face.corners[2]
     if not has_wanted_parent(net, u, v, w, level):
-        return False, math.inf
-    meets, slack = wants_triangle(net, u, v, w, level, view, limits)
-    return meets, (drift + slack) * ROUNDED
+        return False, NEVER
+    meets, near, far = wants_triangle(net, u, v, w, level, view, limits)
+    return meets, until(drift, near, far)
 
 
 @lean
 def wants_third(net, w, x, b, view, limits):
-    """(is wanted, slack) of the third, at edge w, x, of the birth face of vertex b: whether that is to flip.
+    """(is wanted, near, far) of the third, at edge w, x, of the birth face of vertex b: whether that is to flip.
 
     That is what is seen as long as the face beyond is not split: the side of a front would stay as long as
     it was beside a back. Of what was seen of long edges nine in ten were such thirds.
@@ -92,7 +88,7 @@ def wants_third(net, w, x, b, view, limits):
 
 @lean
 def examine_half(net, h, view, limits, drift):
-    """(is the face beyond to be split, until which drift) of a half.
+    """(is the face beyond to be split, up to which word) of a half.
 
     It is if the half itself is wanted, or one of the two faces that it is to be part of: for once these are
     there, from another view, their parent on this side is reason enough to keep and split them.
@@ -101,20 +97,19 @@ def examine_half(net, h, view, limits, drift):
     level = generation(face.state) + 1
     w, x, b = np.int64(face.corners[0]), np.int64(face.corners[1]), np.int64(face.corners[2])
     if (net.flags[b] & WANTED) == 0:
-        return False, math.inf
-    meets, slack = wants_third(net, w, x, b, view, limits)
+        return False, NEVER
+    meets, near, far = wants_third(net, w, x, b, view, limits)
     if meets:
-        return True, 0.0
+        return True, EXPIRED
     dx, dy, dz = virtual_apex(net, h)
     wx, wy, wz = position(net, w, level)
     xx, xy, xz = position(net, x, level)
     bx, by, bz = position(net, b, level)
-    meets, other = wants(net, w, x, b, level, view, limits, wx, wy, wz, dx, dy, dz, bx, by, bz)
-    slack = min(slack, other)
+    meets, one_near, one_far = wants(net, w, x, b, level, view, limits, wx, wy, wz, dx, dy, dz, bx, by, bz)
     if meets:
-        return True, 0.0
-    meets, other = wants(net, x, b, w, level, view, limits, xx, xy, xz, bx, by, bz, dx, dy, dz)
-    return meets, (drift + min(slack, other)) * ROUNDED
+        return True, EXPIRED
+    meets, two_near, two_far = wants(net, x, b, w, level, view, limits, xx, xy, xz, bx, by, bz, dx, dy, dz)
+    return meets, until(drift, min(near, min(one_near, two_near)), min(far, min(one_far, two_far)))
 
 
 @lean
@@ -140,7 +135,7 @@ def is_seen_beyond(net, c, view, limits):
 @lean
 def is_third_wanted(net, f, n, b, view, limits):
     """Whether the third of b's birth face is wanted that went, in a flip, into the faces f and n."""
-    meets, _ = wants_third(net, oldest(net, f), oldest(net, n), b, view, limits)
+    meets, _, _ = wants_third(net, oldest(net, f), oldest(net, n), b, view, limits)
     return meets
 
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import EXPIRED
 from ._kernels_sqrt3_layout import (
     DOUBTFUL,
     FACES,
@@ -170,7 +171,7 @@ def sew(net, f, j, n, k):
 def set_state(net, f, state):
     """Make a face another kind; it is to be asked."""
     net.faces[f].state = state
-    net.faces[f].until = 0.0
+    net.face_until[f] = EXPIRED
     enqueue(net, f)
 
 

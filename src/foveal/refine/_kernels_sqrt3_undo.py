@@ -1,12 +1,11 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """The inverses of √3 refinement's operators: flip an edge back, make one face of three."""
 
-import math
-
 import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import NEVER
 from ._kernels_sqrt3_layout import MEETS, NONE, corner_at, is_half, whole
 from ._kernels_sqrt3_slots import give_face, give_vertex, put, relink, set_state, sew
 
@@ -64,11 +63,11 @@ def unflip_all(net, v):
 
 @lean
 def known_until(net, v):
-    """Up to which drift the birth face of v, no longer split, need not be asked.
+    """Up to which word of drift the birth face of v, no longer split, need not be asked.
 
     Where it meets the criteria it was for want of a wanted parent that it is split no longer.
     """
-    return math.inf if net.flags[v] & MEETS != 0 else net.vertices[v].until
+    return np.int64(NEVER) if net.flags[v] & MEETS != 0 else net.vertex_until[v]
 
 
 @lean
@@ -87,7 +86,7 @@ def unsplit(net, v):
     h = np.int64(net.faces[g].beside[1])
     n0, n1, n2 = net.faces[f].beside[0], net.faces[g].beside[0], net.faces[h].beside[0]
     put(net, f, a, b, c, n0, n1, n2, net.faces[f].state - 1)
-    net.faces[f].until = known_until(net, v)
+    net.face_until[f] = known_until(net, v)
     relink(net, n1, c, f)
     relink(net, n2, a, f)
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f
@@ -127,7 +126,7 @@ def uncut(net, p, q):
     g, h = np.int64(net.faces[f].beside[0]), np.int64(net.faces[f].beside[2])
     n1, n2 = net.faces[h].beside[0], net.faces[g].beside[0]
     put(net, f, a, b, c, NONE, n1, n2, whole(level))
-    net.faces[f].until = known_until(net, p)
+    net.face_until[f] = known_until(net, p)
     relink(net, n1, c, f)
     relink(net, n2, a, f)
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f

@@ -6,20 +6,17 @@ corners are from) is wanted. It is needed split if it is wanted, or parent of a 
 wanted one whose third at their edge meets the criteria. All this reads positions of uniform subdivision only;
 so the mesh depends on the view, not on the way to it.
 
-Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the
-beginning, and a face's and a vertex's `until` say up to which drift an answer holds. On an orbit of one
-degree nine in ten hold.
+Answers are kept for as long as `_kernels_drift.py` says: `face_until` and `vertex_until` are words of it. On
+an orbit of one degree XX in a hundred hold.
 """
-
-import math
 
 import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import EXPIRED, NEVER, holds, until
 from ._kernels_sqrt3 import beyond_cut, cut_seam, split
 from ._kernels_sqrt3_ask import (
-    ROUNDED,
     examine,
     examine_half,
     is_seen_beyond,
@@ -52,12 +49,12 @@ ROOM, LITTLE_ROOM = 512, 8
 def review(net, view, limits, drift):
     """Ask anew where answers no longer hold, and see what follows of what is wanted."""
     for i in range(net.counts[VERTICES]):
-        if net.births[i] <= 0 or net.vertices[i].until > drift:
+        if net.births[i] <= 0 or holds(net.vertex_until[i], drift):
             continue
         v, vertex = np.int64(i), net.vertices[i]
         a, b, c = vertex.triple[0], vertex.triple[1], vertex.triple[2]
-        meets, slack = wants_triangle(net, a, b, c, net.births[v] - 1, view, limits)
-        vertex.until = (drift + slack) * ROUNDED
+        meets, near, far = wants_triangle(net, a, b, c, net.births[v] - 1, view, limits)
+        net.vertex_until[v] = until(drift, near, far)
         if meets != (net.flags[v] & MEETS != 0):
             net.flags[v] ^= MEETS
             reconsider(net, v)
@@ -92,8 +89,8 @@ def wake(net, v):
     for is_back in (False, True):
         f = first
         while f >= 0:
-            if net.faces[f].until == math.inf:
-                net.faces[f].until = 0.0
+            if net.face_until[f] == NEVER:
+                net.face_until[f] = EXPIRED
                 enqueue(net, f)
             k = corner_at(net.faces[f], v)
             f = np.int64(net.faces[f].beside[k if is_back else (k + 2) % 3])
@@ -156,37 +153,37 @@ def with_it(net, v, k):
 def wake_expired(net, drift):
     """Put the faces whose answers no longer hold into the queue."""
     for f in range(net.counts[FACES]):
-        if net.faces[f].until <= drift and net.faces[f].state != FREE:
+        if not holds(net.face_until[f], drift) and net.faces[f].state != FREE:
             enqueue(net, f)
 
 
 @lean
-def split_as(net, f, is_own, until, view, limits, drift):
-    """Split face f, which is wanted itself (is_own, until which drift) or only needed.
+def split_as(net, f, is_own, known, view, limits, drift):
+    """Split face f, which is wanted itself (is_own, up to which word that is known) or only needed.
 
     Where it is cut at a seam, the face beyond is split with it.
     """
     n = beyond_cut(net, f)
     if n == NONE:
-        mark(net, split(net, f), is_own, until)
+        mark(net, split(net, f), is_own, known)
         return
     is_other, other = examine(net, n, view, limits, drift)
     p = cut_seam(net, f, n)
-    mark(net, p, is_own, until)
+    mark(net, p, is_own, known)
     mark(net, np.int64(net.vertices[p].twin), is_other, other)
 
 
 @lean
-def mark(net, b, is_own, until):
+def mark(net, b, is_own, known):
     """Say of a new vertex, and its pair, whether its birth face was wanted split itself."""
     c = np.int64(net.vertices[b].pair)
     if is_own:
         net.flags[b] |= MEETS | WANTED
     else:
         doubt(net, b)
-    net.vertices[b].until = until if is_own else 0.0
+    net.vertex_until[b] = known if is_own else EXPIRED
     if c != NONE:
-        net.flags[c], net.vertices[c].until = net.flags[b], net.vertices[b].until
+        net.flags[c], net.vertex_until[c] = net.flags[b], net.vertex_until[b]
 
 
 @lean
@@ -206,16 +203,16 @@ def refine(net, most, chain, view, limits, drift):
         if not has_room(net, ROOM):
             return False
         f = dequeue(net)
-        if net.faces[f].state == FREE or net.faces[f].until > drift:
+        if net.faces[f].state == FREE or holds(net.face_until[f], drift):
             continue
         if is_half(net.faces[f].state):
-            is_own, until = examine_half(net, f, view, limits, drift)
+            is_own, known = examine_half(net, f, view, limits, drift)
         else:
-            is_own, until = examine(net, f, view, limits, drift)
+            is_own, known = examine(net, f, view, limits, drift)
         if not is_own:
-            net.faces[f].until = until
+            net.face_until[f] = known
         elif waits_for(net, f) == NONE:
-            split_as(net, f, True, until, view, limits, drift)
+            split_as(net, f, True, known, view, limits, drift)
         elif not force(net, f, chain, view, limits, drift):
             enqueue(net, f)
             return False
@@ -254,7 +251,7 @@ def force(net, f, chain, view, limits, drift):
             chain[depth, 0], chain[depth, 1] = n, net.faces[n].state
             depth += 1
         else:
-            is_own, until = examine(net, h, view, limits, drift)
-            split_as(net, h, is_own, until, view, limits, drift)
+            is_own, known = examine(net, h, view, limits, drift)
+            split_as(net, h, is_own, known, view, limits, drift)
             depth -= 1
     return True

@@ -164,14 +164,14 @@ class Rgb:
         # Of the same view the rest is done: what was forced for edges not split yet is not to be undone.
         if not self._drift.is_still(view, limits):
             if not self._drift.move(view, limits, state.box()):
-                state.net.faces["until"] = state.net.vertices["until"] = 0.0
-            drift = self._drift.total
+                state.net.faces["until"] = state.net.vertices["until"] = 0
+            drift = self._drift.now
             begin = 0
             while (begin := int(kernels.review(state.net, begin, view, limits, drift))) < state.slots:
                 state.grow()
             kernels.coarsen(state.net)
             kernels.enqueue_expired(state.net, drift)
-        drift = self._drift.total
+        drift = self._drift.now
         most = _EVER if most_splits is None else int(state.net.counts[SPLITS]) + most_splits
         while kernels.refine(state.net, view, limits, drift, most, most_faces) == kernels.NO_ROOM:
             state.grow()

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from . import _kernels_rgb_ask as kernels
 from . import _kernels_rgb_update as update_kernels
+from ._kernels_drift import NEVER
 from ._kernels_rgb_layout import FACES, PRESENT, SPLITS
 from .rgb_edges import Edges, Measure
 from .rgb_state import State
@@ -21,10 +22,10 @@ _VIEW, _LIMITS = np.zeros(24), np.zeros((3, 3))
 def bring_measured(state: State, measure: Measure, scale: float, most_faces: int) -> None:
     """Split the edges for which `measure` is above `scale`; stops early with more than `most_faces`."""
     net = state.net
-    net.faces["until"][: net.counts[FACES]] = net.vertices["until"] = 0.0
+    net.faces["until"][: net.counts[FACES]] = net.vertices["until"] = 0
     _answer_split(state, measure, scale)
     update_kernels.coarsen(state.net)
-    update_kernels.enqueue_expired(state.net, 1.0)
+    update_kernels.enqueue_expired(state.net, kernels.NO_DRIFT)
     while state.faces <= most_faces:
         before = int(state.net.counts[SPLITS])
         asked = _answer_candidates(state, measure, scale)
@@ -37,7 +38,7 @@ def bring_measured(state: State, measure: Measure, scale: float, most_faces: int
 def _answer_split(state: State, measure: Measure, scale: float) -> None:
     """Ask about the edges that are split and were not asked yet."""
     vertices = state.net.vertices
-    is_asked = (vertices["flags"] & PRESENT != 0) & (vertices["birth"] > 0) & (vertices["until"] < np.inf)
+    is_asked = (vertices["flags"] & PRESENT != 0) & (vertices["birth"] > 0) & (vertices["until"] < NEVER)
     slots = np.nonzero(is_asked)[0].astype(np.int32)
     for order in np.split(slots, range(_EDGES, len(slots), _EDGES)):
         edges, begin = _room(len(order)), 0

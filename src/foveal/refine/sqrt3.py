@@ -139,7 +139,7 @@ class Sqrt3:
         before = self._vertices()
         most = before + most_splits if most_splits is not None else np.iinfo(np.int64).max
         chain = np.empty((2 * MAX_LEVEL + 2, 2), np.int64)
-        while not kernels.refine(self._net, most, chain, view, limits, self._drift.total):
+        while not kernels.refine(self._net, most, chain, view, limits, self._drift.now):
             self._net = self._net.grown(2 * len(self._net.faces), 2 * len(self._net.vertices))
         counts, vertices = self._net.counts, self._vertices()
         return Update(
@@ -154,8 +154,8 @@ class Sqrt3:
         """Undo what a view does not need, and let faces wait that have to be asked."""
         net = self._net
         if not self._drift.move(view, limits, self._corners):
-            net.faces["until"] = net.vertices["until"] = 0.0
-        drift = self._drift.total
+            net.face_until[:] = net.vertex_until[:] = 0
+        drift = self._drift.now
         kernels.review(net, view, limits, drift)
         undone = int(kernels.coarsen(net, view, limits))
         kernels.wake_expired(net, drift)

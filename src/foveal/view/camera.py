@@ -67,7 +67,7 @@ class Camera:
         distance = float(np.linalg.norm(aim - eye))
         if distance < _CLOSE:
             raise FovealError("camera: position and target are the same point; move one of them.")
-        if not np.linalg.norm(np.cross(aim - eye, above)) > 1e-12 * distance * np.linalg.norm(above):
+        if not np.linalg.norm(_cross(aim - eye, above)) > 1e-12 * distance * np.linalg.norm(above):
             raise FovealError("camera: it looks along its own up direction; give another up.")
         if not 0 < field_of_view < math.pi:
             raise FovealError(
@@ -123,9 +123,9 @@ class Camera:
         """(3, 3): the camera's right, up and backward unit vectors as rows."""
         backward = self.position - self.target
         backward = backward / np.linalg.norm(backward)
-        right = np.cross(self.up, backward)
+        right = _cross(self.up, backward)
         right = right / np.linalg.norm(right)
-        return np.stack([right, np.cross(backward, right), backward])
+        return np.stack([right, _cross(backward, right), backward])
 
     def pixels_per_radian(self) -> float:
         """Picture height over 2 tan(field of view / 2): pixels of a unit length at unit distance."""
@@ -196,6 +196,12 @@ def _check_size(width: float, height: float) -> None:
         )
     if width != int(width) or height != int(height):
         raise FovealError(f"camera: a picture has whole pixels, got {width:g} x {height:g}.")
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """As `np.cross`, to the bit, in a tenth of its time: a refinement asks for two with each view."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
 def _triple(values: ArrayLike, name: str) -> NDArray[np.float64]:
