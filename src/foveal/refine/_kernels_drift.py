@@ -39,6 +39,12 @@ def holds(word, drift):
     return (word >> 32) > (drift[0] >> 32) and (word & LOW) > (drift[0] & LOW)
 
 
+@inlined
+def both(one, other):
+    """The word up to which two answers hold."""
+    return (min(one >> 32, other >> 32) << 32) + min(one & LOW, other & LOW)
+
+
 @kernel
 def moved(before, view, corners):
     """(near, far) from one view to the next; corners (8, 3) of a box around all points."""

@@ -10,11 +10,13 @@ import numpy as np
 
 from foveal.base.jit import lean
 
+from ._kernels_drift import EXPIRED
 from ._kernels_sqrt3_layout import (
     BORDER,
     NONE,
     PARENT,
     UNMEASURED,
+    WANTED,
     generation,
     half,
     seam_face,
@@ -29,17 +31,28 @@ from ._kernels_sqrt3_slots import adopt, put, relink, set_state, sew, take_face,
 def flip(net, h, n):
     """Two halves of one old edge (w, x) become two faces of the next generation.
 
-    Half h = (w, x, b) becomes (w, c, b), its mate n = (x, w, c) becomes (x, b, c).
+    Half h = (w, x, b) becomes (w, c, b), its mate n = (x, w, c) becomes (x, b, c). What was asked of a half
+    was asked of these two faces, too.
     """
     one, two, vertices = net.faces[h], net.faces[n], net.vertices
     w, x, b, c = one.corners[0], one.corners[1], one.corners[2], two.corners[2]
     h1, h2, n1, n2 = one.beside[1], one.beside[2], two.beside[1], two.beside[2]
-    state = one.state + 1
-    put(net, h, w, c, b, n1, n, h2, state)
-    put(net, n, x, b, c, h1, h, n2, state)
+    state, known = one.state + 1, max(known_of_half(net, h), known_of_half(net, n))
+    put(net, h, w, c, b, n1, n, h2, state, known)
+    put(net, n, x, b, c, h1, h, n2, state, known)
     relink(net, n1, c, h)
     relink(net, h1, b, n)
     vertices[w].around, vertices[x].around, vertices[b].around, vertices[c].around = h, n, h, h
+
+
+@lean
+def known_of_half(net, h):
+    """Up to which word of drift it was found of half h that nothing it stands for is wanted, or EXPIRED.
+
+    What waits in the queue may be out of date.
+    """
+    is_told = net.flags[net.faces[h].corners[2]] & WANTED != 0 and not net.faces[h].is_queued
+    return net.faces[h].until if is_told else np.int64(EXPIRED)
 
 
 @lean
@@ -48,7 +61,7 @@ def settle(net, h):
     face = net.faces[h]
     n = face.beside[0]
     if n < 0:
-        set_state(net, h, face.state + 1)
+        set_state(net, h, face.state + 1, EXPIRED)
     elif net.faces[n].state == face.state and net.faces[n].beside[0] == h:
         flip(net, h, n)
 
@@ -101,9 +114,9 @@ def split(net, f):
     vertex.born[0], vertex.born[1], vertex.born[2] = middle(net, f, level)
     vertex.limit[0] = math.nan  # unmeasured: whoever reads it would show
     g, h = take_face(net), take_face(net)
-    put(net, f, u, v, b, n0, g, h, half(level))
-    put(net, g, v, w, b, n1, h, f, half(level))
-    put(net, h, w, u, b, n2, f, g, half(level))
+    put(net, f, u, v, b, n0, g, h, half(level), EXPIRED)
+    put(net, g, v, w, b, n1, h, f, half(level), EXPIRED)
+    put(net, h, w, u, b, n2, f, g, half(level), EXPIRED)
     relink(net, n1, w, g)
     relink(net, n2, u, h)
     net.vertices[u].around, net.vertices[v].around, net.vertices[w].around, vertex.around = f, g, h, f
@@ -167,9 +180,9 @@ def cut(net, f):
     for axis in range(3):
         net.normals[p, axis] = net.normals[q, axis] = net.normals[c, axis]
     g, h = take_face(net), take_face(net)
-    put(net, f, c, p, q, g, NONE, h, whole(level + 1))
-    put(net, g, c, a, p, n2, NONE, f, half(level))
-    put(net, h, b, c, q, n1, f, NONE, half(level))
+    put(net, f, c, p, q, g, NONE, h, whole(level + 1), EXPIRED)
+    put(net, g, c, a, p, n2, NONE, f, half(level), EXPIRED)
+    put(net, h, b, c, q, n1, f, NONE, half(level), EXPIRED)
     relink(net, n1, c, h)
     relink(net, n2, a, g)
     vertices = net.vertices

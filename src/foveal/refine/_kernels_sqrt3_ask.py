@@ -9,7 +9,7 @@ import numpy as np
 from foveal.base.jit import inlined, lean
 
 from ._kernels_criteria import BALL, THIRD, is_wanted, longest_edge
-from ._kernels_drift import EXPIRED, NEVER, until
+from ._kernels_drift import EXPIRED, NEVER, both, until
 from ._kernels_hidden import BASIS, is_hidden
 from ._kernels_sqrt3_layout import PARENT, WANTED, corner_at, generation, is_half
 from ._kernels_sqrt3_points import position, virtual_apex
@@ -73,7 +73,7 @@ def examine(net, f, view, limits, drift):
 
 @lean
 def wants_third(net, w, x, b, view, limits):
-    """(is wanted, near, far) of the third, at edge w, x, of the birth face of vertex b: whether that is to flip.
+    """(is wanted, near, far) of the third, at edge w, x, of the birth face of b: whether that is to flip.
 
     That is what is seen as long as the face beyond is not split: the side of a front would stay as long as
     it was beside a back. Of what was seen of long edges nine in ten were such thirds.
@@ -113,7 +113,7 @@ def examine_half(net, h, view, limits, drift):
 
 
 @lean
-def is_seen_beyond(net, c, view, limits):
+def is_seen_beyond(net, c, view, limits, drift):
     """Whether a third beside the birth face of c, that of a wanted vertex, has c kept."""
     first = np.int64(net.vertices[c].around)
     for is_back in (False, True):
@@ -124,7 +124,7 @@ def is_seen_beyond(net, c, view, limits):
             b, n = np.int64(face.corners[(k + 1) % 3]), np.int64(face.beside[k])
             # An edge between two vertices of one birth is what the flip of a longer one gave.
             is_flip = n >= 0 and net.births[b] == net.births[c]
-            if is_flip and net.flags[b] & WANTED and is_third_wanted(net, f, n, b, view, limits):
+            if is_flip and net.flags[b] & WANTED and is_third_wanted(net, f, n, b, view, limits, drift):
                 return True
             f = np.int64(face.beside[k if is_back else (k + 2) % 3])
             if f == first:
@@ -133,9 +133,14 @@ def is_seen_beyond(net, c, view, limits):
 
 
 @lean
-def is_third_wanted(net, f, n, b, view, limits):
-    """Whether the third of b's birth face is wanted that went, in a flip, into the faces f and n."""
-    meets, _, _ = wants_third(net, oldest(net, f), oldest(net, n), b, view, limits)
+def is_third_wanted(net, f, n, b, view, limits, drift):
+    """Whether the third of b's birth face is wanted that went, in a flip, into the faces f and n.
+
+    For how long it is not these two remember, should it come back.
+    """
+    meets, near, far = wants_third(net, oldest(net, f), oldest(net, n), b, view, limits)
+    word = until(drift, near, far)
+    net.faces[f].until, net.faces[n].until = both(net.faces[f].until, word), both(net.faces[n].until, word)
     return meets
 
 

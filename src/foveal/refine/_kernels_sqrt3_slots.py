@@ -142,14 +142,14 @@ def dequeue(net):
 
 
 @lean
-def put(net, f, a, b, c, x, y, z, state):
-    """Write a face: corners, faces beyond, state; it is to be asked."""
+def put(net, f, a, b, c, x, y, z, state, known):
+    """Write a face: corners, faces beyond, state, and up to which word of drift it need not be asked."""
     face = net.faces[f]
     face.corners[0], face.corners[1], face.corners[2] = a, b, c
     face.beside[0], face.beside[1], face.beside[2] = x, y, z
     if min(x, min(y, z)) < NONE:
         tell_beyond(net, f)
-    set_state(net, f, state)
+    set_state(net, f, state, known)
 
 
 @lean
@@ -168,11 +168,12 @@ def sew(net, f, j, n, k):
 
 
 @lean
-def set_state(net, f, state):
-    """Make a face another kind; it is to be asked."""
+def set_state(net, f, state, known):
+    """Make a face another kind; it need not be asked up to a word of drift, or must be if that is EXPIRED."""
     net.faces[f].state = state
-    net.face_until[f] = EXPIRED
-    enqueue(net, f)
+    net.faces[f].until = known
+    if known == EXPIRED:
+        enqueue(net, f)
 
 
 @lean

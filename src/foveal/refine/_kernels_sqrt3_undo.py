@@ -5,20 +5,25 @@ import numpy as np
 
 from foveal.base.jit import lean
 
-from ._kernels_drift import NEVER
-from ._kernels_sqrt3_layout import MEETS, NONE, corner_at, is_half, whole
+from ._kernels_drift import EXPIRED, NEVER, both
+from ._kernels_sqrt3_layout import MEETS, NONE, WANTED, corner_at, is_half, whole
 from ._kernels_sqrt3_slots import give_face, give_vertex, put, relink, set_state, sew
 
 
 @lean
 def unflip(net, f, n):
-    """The inverse of `flip`, for f = (w, c, b) and n = (x, b, c)."""
+    """The inverse of `flip`, for f = (w, c, b) and n = (x, b, c).
+
+    A half that may be asked need not be, as long as both faces and the third (`is_third_wanted`) need not.
+    """
     one, two, vertices = net.faces[f], net.faces[n], net.vertices
     w, c, b, x = one.corners[0], one.corners[1], one.corners[2], two.corners[0]
     f0, f2, n0, n2 = one.beside[0], one.beside[2], two.beside[0], two.beside[2]
-    state = one.state - 1
-    put(net, f, w, x, b, n, n0, f2, state)
-    put(net, n, x, w, c, f, f0, n2, state)
+    state, known = one.state - 1, np.int64(EXPIRED)
+    if not (one.is_queued or two.is_queued):
+        known = both(net.faces[f].until, net.faces[n].until)
+    put(net, f, w, x, b, n, n0, f2, state, known if net.flags[b] & WANTED != 0 else np.int64(NEVER))
+    put(net, n, x, w, c, f, f0, n2, state, known if net.flags[c] & WANTED != 0 else np.int64(NEVER))
     relink(net, n0, b, f)
     relink(net, f0, c, n)
     vertices[w].around, vertices[x].around, vertices[b].around, vertices[c].around = f, f, f, n
@@ -57,7 +62,7 @@ def unflip_all(net, v):
         if is_flipped(net, f):
             unflip(net, f, np.int64(net.faces[f].beside[1]))
         else:
-            set_state(net, f, net.faces[f].state - 1)
+            set_state(net, f, net.faces[f].state - 1, EXPIRED)
         f = last_promoted(net, v)
 
 
@@ -67,7 +72,7 @@ def known_until(net, v):
 
     Where it meets the criteria it was for want of a wanted parent that it is split no longer.
     """
-    return np.int64(NEVER) if net.flags[v] & MEETS != 0 else net.vertex_until[v]
+    return np.int64(NEVER) if net.flags[v] & MEETS != 0 else net.vertices[v].until
 
 
 @lean
@@ -85,8 +90,7 @@ def unsplit(net, v):
     g = np.int64(net.faces[f].beside[1])
     h = np.int64(net.faces[g].beside[1])
     n0, n1, n2 = net.faces[f].beside[0], net.faces[g].beside[0], net.faces[h].beside[0]
-    put(net, f, a, b, c, n0, n1, n2, net.faces[f].state - 1)
-    net.face_until[f] = known_until(net, v)
+    put(net, f, a, b, c, n0, n1, n2, net.faces[f].state - 1, known_until(net, v))
     relink(net, n1, c, f)
     relink(net, n2, a, f)
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f
@@ -125,8 +129,7 @@ def uncut(net, p, q):
         f = np.int64(face.beside[2]) if face.corners[0] == c else np.int64(face.beside[1])
     g, h = np.int64(net.faces[f].beside[0]), np.int64(net.faces[f].beside[2])
     n1, n2 = net.faces[h].beside[0], net.faces[g].beside[0]
-    put(net, f, a, b, c, NONE, n1, n2, whole(level))
-    net.face_until[f] = known_until(net, p)
+    put(net, f, a, b, c, NONE, n1, n2, whole(level), known_until(net, p))
     relink(net, n1, c, f)
     relink(net, n2, a, f)
     net.vertices[a].around = net.vertices[b].around = net.vertices[c].around = f

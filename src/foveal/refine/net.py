@@ -9,10 +9,13 @@ from ._kernels_sqrt3_layout import FIRST, WORDS
 
 __all__ = ["FACE", "VERTEX", "Net"]
 
-#: A face. `beside[k]` is the face beyond the edge from corner k to k + 1, negative at a
-#: border or seam. Of a free slot `beside[0]` is the next.
+#: A face. `until` is the word of drift (`_kernels_drift.py`) up to which it is known not to be wanted split,
+#: `beside[k]` the face beyond the edge from corner k to k + 1, negative at a border or seam. Of a free slot
+#: `beside[0]` is the next. (Words of drift in an array of their own: a refinement from nothing took a tenth
+#: longer.)
 FACE = np.dtype(
     [
+        ("until", np.int64),
         ("corners", np.int32, 3),
         ("beside", np.int32, 3),
         ("state", np.int8),
@@ -21,9 +24,9 @@ FACE = np.dtype(
     align=True,
 )
 
-#: A vertex: where it is at every level (`_kernels_sqrt3_points.py`), the corners of the face in which it was
-#: born, the other vertex born in the same border edge, the one at the same place beyond a seam, one of its
-#: faces; one of those born in a
+#: A vertex, in two cache lines: where it is at every level (`_kernels_sqrt3_points.py`), up to which word of
+#: drift it is known whether its birth face meets the criteria, that face's corners, the other vertex born in
+#: the same border edge, the one at the same place beyond a seam, one of its faces; one of those born in a
 #: face that it is a parent of, and the next of each of its parents'; the next that may have to go, if it may.
 #: Of a free slot `triple[0]` is the next.
 VERTEX = np.dtype(
@@ -31,6 +34,7 @@ VERTEX = np.dtype(
         ("born", np.float64, 3),
         ("limit", np.float64, 3),
         ("third", np.float64, 3),
+        ("until", np.int64),
         ("triple", np.int32, 3),
         ("pair", np.int32),
         ("twin", np.int32),
@@ -55,12 +59,8 @@ class Net(NamedTuple):
     ----------
     faces : (F,) FACE
     vertices : (V,) VERTEX
-    face_until : (F,) int64
-        Up to which word of drift (`_kernels_drift.py`) it is known that a face is not wanted split.
-    vertex_until : (V,) int64
-        The same of whether a vertex's birth face meets the criteria.
     births, flags : (V,) int8, uint8
-        Apart, as those before, since every update reads all of them.
+        Apart, since every update reads all of them.
     normals : (V, 3) float32
         Of the limit surface.
     shrinks : (n,) float64
@@ -72,8 +72,6 @@ class Net(NamedTuple):
 
     faces: NDArray[Any]
     vertices: NDArray[Any]
-    face_until: NDArray[np.int64]
-    vertex_until: NDArray[np.int64]
     births: NDArray[np.int8]
     flags: NDArray[np.uint8]
     normals: NDArray[np.float32]
@@ -87,8 +85,6 @@ class Net(NamedTuple):
         return cls(
             np.zeros(faces, FACE),
             np.zeros(vertices, VERTEX),
-            np.zeros(faces, np.int64),
-            np.zeros(vertices, np.int64),
             np.zeros(vertices, np.int8),
             np.zeros(vertices, np.uint8),
             np.zeros((vertices, 3), np.float32),

@@ -15,8 +15,8 @@ __all__ = ["BASE", "FACE", "MAX_BASE", "VERTEX", "RgbNet", "check_base"]
 
 #: A face, in a cache line. `beside[k]` is the face beyond the edge from corner k to k + 1, `base` the control
 #: mesh's triangle it lies in, `code` its colour and level, `until[k]` the word of drift (`_kernels_drift.py`)
-#: up to which edge k is known not to be wanted split, or NEVER for an edge that this face need not ask, `next` what follows
-#: in the queue. Of a free slot `beside[0]` is the next free one.
+#: up to which edge k is known not to be wanted split, or NEVER for an edge that this face need not ask,
+#: `next` what follows in the queue. Of a free slot `beside[0]` is the next free one.
 FACE = np.dtype(
     [
         ("until", np.int64, 3),
@@ -30,10 +30,10 @@ FACE = np.dtype(
     align=True,
 )
 
-#: A vertex, in the mesh or only computed, in two cache lines: where it was born, its limit; up to which word of
-#: drift it is known whether the edge it splits meets the criteria; how far the normals are from its own of the
-#: triangles it was born between; the level it was born on, FREE for slots not in use; how many splits take
-#: it, and how many wanted ones of half edges; how much nearer to its limit it comes with each level; its
+#: A vertex, in the mesh or only computed, in two cache lines: where it was born, its limit; up to which word
+#: of drift it is known whether the edge it splits meets the criteria; how far the normals are from its own of
+#: the triangles it was born between; the level it was born on, FREE for slots not in use; how many splits
+#: take it, and how many wanted ones of half edges; how much nearer to its limit it comes with each level; its
 #: address, its normal, the ends and apexes of the edge it splits, one of its faces, when it was last used,
 #: the next that may have to go, if it may. Of a free slot `diamond[0]` is the next one.
 VERTEX = np.dtype(

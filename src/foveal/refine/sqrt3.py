@@ -154,10 +154,10 @@ class Sqrt3:
         """Undo what a view does not need, and let faces wait that have to be asked."""
         net = self._net
         if not self._drift.move(view, limits, self._corners):
-            net.face_until[:] = net.vertex_until[:] = 0
+            net.faces["until"] = net.vertices["until"] = 0
         drift = self._drift.now
         kernels.review(net, view, limits, drift)
-        undone = int(kernels.coarsen(net, view, limits))
+        undone = int(kernels.coarsen(net, view, limits, drift))
         kernels.wake_expired(net, drift)
         return undone
 
