@@ -182,10 +182,15 @@ def butterfly_at(net, v, axis):
 
 
 @lean
-def butterfly_born(net, v):
-    """Where v is born, which is its limit."""
+def butterfly_born(net, top, v):
+    """Where v is born, which is its limit; or push what of its stencil is still unknown."""
+    before = top
+    top = butterfly_needs(net, top, v)
+    if top > before:
+        return top
     x, y, z = butterfly_at(net, v, 0), butterfly_at(net, v, 1), butterfly_at(net, v, 2)
     set_born(net, v, x, y, z)
     vertex = net.vertices[v]
     vertex.limit[0], vertex.limit[1], vertex.limit[2] = x, y, z
     net.vertices[v].flags |= LIMIT
+    return top

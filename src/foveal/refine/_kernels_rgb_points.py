@@ -22,7 +22,7 @@ import numpy as np
 from foveal.base.jit import inlined, lean
 
 from ._kernels_rgb_address import LEFT, RIGHT, at, side
-from ._kernels_rgb_butterfly import butterfly_born, butterfly_needs
+from ._kernels_rgb_butterfly import butterfly_born
 from ._kernels_rgb_known import ASK_BORN, ASK_LIMIT, is_known, push, push_unknown, set_born
 from ._kernels_rgb_layout import BORN, BUTTERFLY, LIMIT, NONE, NORMAL, PRESENT, SCHEME, STACK
 
@@ -71,35 +71,21 @@ def beside_apex(net, v, way):
 
 
 @lean
-def loop_needs(net, top, v, ask):
-    """Push what is still unknown of what it takes."""
-    a, b, c, d = diamond_of(net, v)
-    level = np.int64(net.vertices[v].birth)
-    if ask == ASK_BORN:
-        top = push_unknown(net, top, a, level - 1)
-        top = push_unknown(net, top, b, level - 1)
-        top = push_unknown(net, top, c, level - 1)
-        return top if d == NONE else push_unknown(net, top, d, level - 1)
-    top = push_unknown(net, top, a, level)
-    top = push_unknown(net, top, b, level)
-    if d != NONE:
-        for way in (LEFT, RIGHT):
-            p, q = beside_apex(net, v, way)
-            top = push_unknown(net, top, p, level)
-            top = push_unknown(net, top, q, level)
-    return top
-
-
-@lean
-def loop_born(net, v):
-    """Where v is born: in an edge, or in a border edge."""
+def loop_born(net, top, v):
+    """Where v is born, in an edge or a border edge; or push what of that is still unknown."""
     a, b, c, d = diamond_of(net, v)
     level = np.int64(net.vertices[v].birth) - 1
+    before = top
+    top = push_unknown(net, push_unknown(net, top, a, level), b, level)
+    if d != NONE:
+        top = push_unknown(net, push_unknown(net, top, c, level), d, level)
+    if top > before:
+        return top
     ax, ay, az = position(net, a, level)
     bx, by, bz = position(net, b, level)
     if d == NONE:
         set_born(net, v, 0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
-        return
+        return top
     cx, cy, cz = position(net, c, level)
     dx, dy, dz = position(net, d, level)
     set_born(
@@ -109,30 +95,43 @@ def loop_born(net, v):
         0.375 * (ay + by) + 0.125 * (cy + dy),
         0.375 * (az + bz) + 0.125 * (cz + dz),
     )
+    return top
 
 
 @lean
-def loop_limit(net, v):
-    """The limit of v: half itself, half its ring's mean; on a border four of itself to its two neighbours."""
+def loop_limit(net, top, v):
+    """The limit of v, which is born; or push what of that is still unknown.
+
+    Half itself, half its ring's mean; on a border four of itself to its two neighbours.
+    """
     a, b, _, d = diamond_of(net, v)
     level = np.int64(net.vertices[v].birth)
-    x, y, z = position(net, a, level)
+    before = top
+    top = push_unknown(net, push_unknown(net, top, a, level), b, level)
+    p = q = r = t = np.int64(NONE)
+    if d != NONE:
+        p, q = beside_apex(net, v, LEFT)
+        r, t = beside_apex(net, v, RIGHT)
+        top = push_unknown(net, push_unknown(net, top, p, level), q, level)
+        top = push_unknown(net, push_unknown(net, top, r, level), t, level)
+    if top > before:
+        return top
+    ax, ay, az = position(net, a, level)
     bx, by, bz = position(net, b, level)
-    x, y, z = x + bx, y + by, z + bz
+    x, y, z = ax + bx, ay + by, az + bz
     vertex = net.vertices[v]
-    px, py, pz = vertex.born[0], vertex.born[1], vertex.born[2]
+    vx, vy, vz = vertex.born[0], vertex.born[1], vertex.born[2]
     net.vertices[v].flags |= LIMIT
     if d == NONE:
-        vertex.limit[0] = (x + 4.0 * px) * SIXTH
-        vertex.limit[1] = (y + 4.0 * py) * SIXTH
-        vertex.limit[2] = (z + 4.0 * pz) * SIXTH
-        return
-    p, q = beside_apex(net, v, LEFT)
-    r, t = beside_apex(net, v, RIGHT)
-    p, q, r, t = net.vertices[p].born, net.vertices[q].born, net.vertices[r].born, net.vertices[t].born
-    vertex.limit[0] = 0.5 * (px + (x + ((p[0] + q[0]) + (r[0] + t[0]))) * SIXTH)
-    vertex.limit[1] = 0.5 * (py + (y + ((p[1] + q[1]) + (r[1] + t[1]))) * SIXTH)
-    vertex.limit[2] = 0.5 * (pz + (z + ((p[2] + q[2]) + (r[2] + t[2]))) * SIXTH)
+        vertex.limit[0] = (x + 4.0 * vx) * SIXTH
+        vertex.limit[1] = (y + 4.0 * vy) * SIXTH
+        vertex.limit[2] = (z + 4.0 * vz) * SIXTH
+        return top
+    f, g, h, i = net.vertices[p].born, net.vertices[q].born, net.vertices[r].born, net.vertices[t].born
+    vertex.limit[0] = 0.5 * (vx + (x + ((f[0] + g[0]) + (h[0] + i[0]))) * SIXTH)
+    vertex.limit[1] = 0.5 * (vy + (y + ((f[1] + g[1]) + (h[1] + i[1]))) * SIXTH)
+    vertex.limit[2] = 0.5 * (vz + (z + ((f[2] + g[2]) + (h[2] + i[2]))) * SIXTH)
+    return top
 
 
 @lean
@@ -170,16 +169,14 @@ def ensure(net, v, ask):
         if what == ASK_LIMIT and net.vertices[w].flags & BORN == 0:
             top = push(net, top, w, ASK_BORN)
             continue
-        top = butterfly_needs(net, top, w) if is_butterfly else loop_needs(net, top, w, what)
-        if top > before:
-            continue
         if is_butterfly:
-            butterfly_born(net, w)
+            top = butterfly_born(net, top, w)
         elif what == ASK_LIMIT:
-            loop_limit(net, w)
+            top = loop_limit(net, top, w)
         else:
-            loop_born(net, w)
-        top -= 1
+            top = loop_born(net, top, w)
+        if top == before:  # done
+            top -= 1
 
 
 @inlined

@@ -110,11 +110,12 @@ def force(net, f, k, known, view, limits, drift):
     """
     chain = net.counts
     chain[CHAIN], chain[CHAIN + 1] = net.faces[f].corners[k], net.faces[f].corners[(k + 1) % 3]
-    depth = 1
+    depth, h = 1, 3 * f + k
     while depth > 0:
         if not has_room(net):
             return False
-        h = find_edge(net, chain[CHAIN + 2 * depth - 2], chain[CHAIN + 2 * depth - 1])
+        if h == NONE:
+            h = find_edge(net, chain[CHAIN + 2 * depth - 2], chain[CHAIN + 2 * depth - 1])
         if h == NONE:
             depth -= 1
             continue
@@ -127,8 +128,9 @@ def force(net, f, k, known, view, limits, drift):
             face, j = net.faces[o // 3], o % 3
             chain[CHAIN + 2 * depth] = face.corners[j]
             chain[CHAIN + 2 * depth + 1] = face.corners[(j + 1) % 3]
-            depth += 1
+            depth, h = depth + 1, o
             continue
+        h = np.int64(NONE)
         v = split_edge(net, g, i)
         depth -= 1
         if depth == 0 and known > EXPIRED:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._kernels_sqrt3_layout import FIRST, WORDS
+from .lines import in_lines
 
 __all__ = ["FACE", "VERTEX", "Net"]
 
@@ -83,8 +84,8 @@ class Net(NamedTuple):
     def empty(cls, faces: int, vertices: int, base: int, /) -> "Net":
         """Room for so many faces and vertices, of a control mesh with `base` vertices."""
         return cls(
-            np.zeros(faces, FACE),
-            np.zeros(vertices, VERTEX),
+            in_lines(faces, FACE),
+            in_lines(vertices, VERTEX),
             np.zeros(vertices, np.int8),
             np.zeros(vertices, np.uint8),
             np.zeros((vertices, 3), np.float32),

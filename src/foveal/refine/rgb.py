@@ -60,7 +60,8 @@ class Rgb:
         Loop's masks of 1987 with smooth curves as borders, or the modified butterfly, which goes through the
         control mesh's vertices.
     cached : int
-        How many vertices that are not in the mesh are kept with what is known of them, those last used.
+        How many vertices that are not in the mesh are kept with what is known of them, those last used; for a
+        while up to a quarter more.
     name : str
         What errors call the mesh.
 

@@ -10,6 +10,7 @@ from foveal.mesh.trimesh import TriMesh
 
 from ._kernels_rgb_layout import WORDS
 from .cage import Cage
+from .lines import in_lines
 
 __all__ = ["BASE", "FACE", "MAX_BASE", "VERTEX", "RgbNet", "check_base"]
 
@@ -95,8 +96,8 @@ class RgbNet(NamedTuple):
         base = np.zeros(len(cage.faces), BASE)
         base["corners"], base["mates"] = cage.faces, _mates(cage)
         return cls(
-            _in_lines(faces, FACE),
-            _in_lines(vertices, VERTEX),
+            in_lines(faces, FACE),
+            in_lines(vertices, VERTEX),
             _empty_table(vertices),
             base,
             np.zeros(WORDS, np.int64),
@@ -105,22 +106,14 @@ class RgbNet(NamedTuple):
     def grown(self, faces: int, vertices: int, /) -> "RgbNet":
         """The same with more room; the table is to be filled."""
         larger = self._replace(
-            faces=_in_lines(faces, FACE),
-            vertices=_in_lines(vertices, VERTEX),
+            faces=in_lines(faces, FACE),
+            vertices=in_lines(vertices, VERTEX),
             table=_empty_table(vertices),
         )
         for name in ("faces", "vertices"):
             old: NDArray[Any] = getattr(self, name)
             getattr(larger, name)[: len(old)] = old
         return larger
-
-
-def _in_lines(count: int, dtype: "np.dtype[Any]") -> NDArray[Any]:
-    """Zeros that begin where a cache line does."""
-    size, line = count * dtype.itemsize, 64
-    room = np.zeros(size + line, np.uint8)
-    begin = -room.ctypes.data % line
-    return room[begin : begin + size].view(dtype)
 
 
 def _empty_table(vertices: int) -> NDArray[np.int32]:

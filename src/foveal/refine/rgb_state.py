@@ -76,10 +76,14 @@ class State:
         return int(self.net.counts[PRESENT_COUNT])
 
     def forget(self, capacity: int) -> None:
-        """Keep of the vertices that are not in the mesh so many, those that were used last; time goes on."""
+        """Keep of the vertices that are not in the mesh so many, those that were used last; time goes on.
+
+        Up to a quarter more are let be: to look through all takes 3 ms at 100,000 triangles, a quarter of a
+        degree's orbit.
+        """
         net = self.net
         net.counts[CLOCK] += 1
-        if int(net.counts[IN_USE] - net.counts[PRESENT_COUNT]) <= capacity:
+        if int(net.counts[IN_USE] - net.counts[PRESENT_COUNT]) <= capacity + capacity // 4:
             return
         count = int(net.counts[VERTICES])
         vertices = net.vertices[:count]
