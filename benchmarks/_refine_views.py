@@ -19,6 +19,9 @@ import foveal.refine.filter as published
 from foveal.mesh import TriMesh
 from foveal.refine import Criteria, Region, Rgb, Sqrt3, Sqrt3Filter
 
+#: Frames in a row.
+_FRAMES = 6
+
 Make = Callable[[TriMesh], Any]
 """A scheme: `Sqrt3`, or what has its methods."""
 
@@ -32,19 +35,24 @@ def pixels(make: Make, wanted: int) -> tuple[float, int]:
 
 @dataclass
 class Walk:
-    """Milliseconds of a scheme on the way around a model, and of others for the first view."""
+    """Milliseconds of a scheme on the way around a model, and of others for the first view.
+
+    An orbit's frame comes after the one before: `orbit` and `fresh` are medians of some in a row. `woken` is
+    the first frame after the others ran, from whose hundreds of megabytes the caches are cold.
+    """
 
     edge_px: float
     faces: int
     fresh: list[float]
     orbit: list[float]
+    woken: list[float]
     bytes_per_triangle: float
     others: dict[str, list[float]]
     why: str
 
 
 def walk(make: Make, wanted: int, runs: int, path: Path | None = None) -> Walk:
-    """Fresh meshes and updates in turns, one degree further each time, at about `wanted` triangles.
+    """Fresh meshes and updates in turns, one degree further each frame, at about `wanted` triangles.
 
     A fresh mesh is made from nothing, its arrays included; an update leaves them in their slots.
     """
@@ -54,12 +62,15 @@ def walk(make: Make, wanted: int, runs: int, path: Path | None = None) -> Walk:
     follower.update(camera(mesh), criteria=wish)
     follower.mesh()
     bytes_used = follower.bytes_used / faces
-    found = Walk(px, faces, [], [], bytes_used, {}, "")
+    found = Walk(px, faces, [], [], [], bytes_used, {}, "")
     chosen = _others(mesh, path, wanted, found) if path else {}
-    for turn in range(1, runs + 1):
-        view = camera(mesh, turn)
-        found.orbit.append(1e3 * seconds(lambda view=view: follower.update(view, criteria=wish)))
-        found.fresh.append(1e3 * seconds(lambda view=view: _fresh(make, mesh, view, wish)))
+    for turn in range(runs):
+        views = [camera(mesh, turn * _FRAMES + i) for i in range(1, _FRAMES + 1)]
+        frames = [1e3 * seconds(lambda view=view: follower.update(view, criteria=wish)) for view in views]
+        found.woken.append(frames[0])
+        found.orbit.append(statistics.median(frames[1:]))
+        fresh = [1e3 * seconds(lambda view=view: _fresh(make, mesh, view, wish)) for view in views[-3:]]
+        found.fresh.append(statistics.median(fresh))
         for name, (program, edge_px) in chosen.items():
             ms = peers.by_view(program, path, camera(mesh), edge_px)[1]
             found.others.setdefault(name, []).append(ms)
@@ -101,6 +112,7 @@ def sqrt3(folder: Path, *, is_quick: bool) -> Iterator[Row]:
     yield Row.of("sqrt3_orbit_1deg_ms", case, done.orbit, "ms", "lower", bar=5)
     shares = [o / statistics.median(done.fresh) for o in done.orbit]
     yield Row.of("sqrt3_orbit_vs_fresh", case, shares, "of fresh", "lower", bar=0.25)
+    yield Row.of("sqrt3_orbit_woken_ms", case, done.woken, "ms", "lower")
     size = done.bytes_per_triangle
     yield Row(
         "sqrt3_bytes_per_triangle", case, size, "byte", "lower", bar=200, peers={"OpenMesh, note": 1300}
@@ -170,6 +182,7 @@ def rgb(*, is_quick: bool) -> Iterator[Row]:
     case = f"{name} to {done.faces:,}, {done.edge_px:.2f} px"
     for key, values in zip(bars, (done.fresh, done.orbit), strict=True):
         yield Row.of(key, case, values, "ms", "lower", bar=bars[key])
+    yield Row.of("rgb_orbit_woken_ms", case, done.woken, "ms", "lower")
 
 
 def rgb_operations(*, is_quick: bool) -> Iterator[Row]:
