@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._kernels_slates_layout import MOST_DEPTH
+from ._kernels_turn import turn
 
 __all__ = ["Mask", "Ring", "Sector", "mask_of", "ring_step", "side_masks"]
 
@@ -211,12 +212,10 @@ def _smooth(n: int, is_dart: bool) -> tuple[Floats, Floats, Floats]:
     point = np.array([n**2] + n * [4] + n * [1]) / (n * (n + 5))
     if n == 2:  # where the formula gives nothing: eigenvectors of its step, both for 1/4
         return point, np.array([0.0, 1, -1, 0, 0]), np.array([0.0, 0, 0, 1, -1])
-    turn = 2 * math.pi / n
-    a = 1 + math.cos(turn) + math.cos(turn / 2) * math.sqrt(2 * (9 + math.cos(turn)))
-    angle = turn * np.arange(n + 1)
-    one, two = (
-        np.concatenate([[0], a * wave[:-1], wave[:-1] + wave[1:]]) for wave in (np.cos(angle), np.sin(angle))
-    )
+    cosine = turn(1, n)[0]
+    a = 1 + cosine + turn(1, 2 * n)[0] * math.sqrt(2 * (9 + cosine))
+    waves = np.array([turn(i % n, n) for i in range(n + 1)]).T
+    one, two = (np.concatenate([[0], a * wave[:-1], wave[:-1] + wave[1:]]) for wave in waves)
     return point, one, two
 
 
@@ -252,12 +251,12 @@ def across(k: int, /) -> Floats:
     """Of the tangent across a crease into a sector of k faces: v, e_0 .. e_k, f_0 .. f_(k-1)."""
     if k == 1:
         return np.array([-2.0, 1, 1, 0])
-    angle = math.pi / k
-    size = (5 + math.cos(angle) + math.cos(angle / 2) * math.sqrt(2 * (9 + math.cos(angle)))) / 16
-    a, cot = 16 * size - 4, 1 / math.tan(angle / 2)
-    centre = -(8 * size * math.sin(angle) + (8 * size - 4) * (8 * size - 1) * cot) / (4 * size - 1)
+    (cosine, sine), (half, half_sine) = turn(1, 2 * k), turn(1, 4 * k)
+    size = (5 + cosine + half * math.sqrt(2 * (9 + cosine))) / 16
+    a, cot = 16 * size - 4, half / half_sine
+    centre = -(8 * size * sine + (8 * size - 4) * (8 * size - 1) * cot) / (4 * size - 1)
     end = -(centre + (16 * size - 2) * cot) / 2
-    wave = np.sin(angle * np.arange(k + 1))
+    wave = np.array([turn(i, 2 * k)[1] for i in range(k + 1)])
     return np.array([centre, end, *(a * wave[1:-1]), end, *(wave[:-1] + wave[1:])])
 
 
