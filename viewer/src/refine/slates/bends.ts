@@ -72,27 +72,36 @@ export function curvatureOf(cosines: Float64Array, levels: number, cone: number,
  * the corners' mean, so that a turned mesh has turned balls.
  */
 export function ballsOf(net: SlateNet, work: Work, { points }: Limits): Float64Array {
-  const out = new Float64Array(net.corners.length);
-  const [before, ring] = [work.rings[0][0]!, work.rings[1][0]!];
+  const { corners, fan, fanStarts, fans } = net;
+  const out = new Float64Array(corners.length);
   for (let h = 0; h < out.length; h += 4) {
     for (let x = 0; x < 3; x++) {
       let total = 0;
-      for (let k = 0; k < 4; k++) total += points[3 * net.corners[h + k]! + x]!;
+      for (let k = 0; k < 4; k++) total += points[3 * corners[h + k]! + x]!;
       out[h + x] = 0.25 * total;
     }
-    let most = 0;
-    for (let k = 0; k < 4; k++) {
-      const v = net.corners[h + k]!;
-      fillRing(net, points, v, before);
-      ringStep(net, v, 0, before, ring);
-      for (let i = 0; i < 3 * (1 + net.ringStarts[v + 1]! - net.ringStarts[v]!); i += 3) {
-        const x = ring[i]! - out[h]!;
-        const y = ring[i + 1]! - out[h + 1]!;
-        const z = ring[i + 2]! - out[h + 2]!;
-        most = Math.max(most, x * x + y * y + z * z);
-      }
-    }
-    out[h + 3] = Math.sqrt(most);
   }
+  const [before, ring] = [work.rings[0][0]!, work.rings[1][0]!];
+  // Vertex by vertex, since a ring is that of several patches; which of them comes first does not change a maximum.
+  for (let v = 0; v < fans.length; v++) {
+    if (fans[v] === 0) continue;
+    fillRing(net, points, v, before);
+    ringStep(net, v, 0, before, ring);
+    const words = 3 * (1 + net.ringStarts[v + 1]! - net.ringStarts[v]!);
+    for (let i = fanStarts[v]!; i < fanStarts[v + 1]!; i++) reach(out, fan[i]! & ~3, ring, words);
+  }
+  for (let h = 3; h < out.length; h += 4) out[h] = Math.sqrt(out[h]!);
   return out;
+}
+
+/** Have the ball at h, whose radius is still a square, hold the points of a ring. */
+function reach(balls: Float64Array, h: number, ring: Float64Array, words: number): void {
+  let most = balls[h + 3]!;
+  for (let i = 0; i < words; i += 3) {
+    const x = ring[i]! - balls[h]!;
+    const y = ring[i + 1]! - balls[h + 1]!;
+    const z = ring[i + 2]! - balls[h + 2]!;
+    most = Math.max(most, x * x + y * y + z * z);
+  }
+  balls[h + 3] = most;
 }

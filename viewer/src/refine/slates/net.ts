@@ -104,7 +104,8 @@ function holesOf(mesh: PolygonMesh, { count, starts, corners, edge, ends, mates 
 function netOf(polygons: Polygons, steps: number, name: string): SlateNet {
   const { corners, mates, vertexSharp } = polygons;
   const fans = fansOf(polygons, name);
-  const sharp = Float64Array.from(polygons.edge, (e) => polygons.sharp[e]!);
+  const sharp = new Float64Array(corners.length);
+  for (let h = 0; h < sharp.length; h++) sharp[h] = polygons.sharp[polygons.edge[h]!]!;
   const rings = ringsOf(polygons, fans, sharp);
   const kinds = kindsOf(polygons, rings.fans, sharp);
   const parts = { corners, mates, vertexSharp, sharp, kinds, ...fans, ...rings };
@@ -170,17 +171,21 @@ function gridOf({ corners, place, fans, ringStarts, ring }: GridParts): Int32Arr
     const spokes = ringStarts[v + 1]! - begin - n;
     const isOpen = spokes > n;
     const isInside = o > 0 || !isOpen;
-    const base = 4 * (h - (h % 4));
-    const put = (row: number, column: number, to: number) => {
-      grid[base + cellOf(h % 4, row, column)] = to;
-    };
-    put(0, 0, v);
-    put(-1, 1, isInside ? ring[begin + spokes + ((o + n - 1) % n)]! : v);
-    put(-1, 0, isInside ? ring[begin + ((o + spokes - 1) % spokes)]! : v);
-    put(-1, -1, n === 4 && !isOpen ? ring[begin + spokes + ((o + 2) % n)]! : v);
+    const base = 4 * (h & ~3);
+    const cells = CELLS[h & 3]!;
+    grid[base + cells[0]!] = v;
+    grid[base + cells[1]!] = isInside ? ring[begin + spokes + ((o + n - 1) % n)]! : v;
+    grid[base + cells[2]!] = isInside ? ring[begin + ((o + spokes - 1) % spokes)]! : v;
+    grid[base + cells[3]!] = n === 4 && !isOpen ? ring[begin + spokes + ((o + 2) % n)]! : v;
   }
   return grid;
 }
+
+/** Of each corner of a patch its own cell of the table, that outside ahead of it, outside it, and across it. */
+const CELLS = [0, 1, 2, 3].map((k) => {
+  const own = [0, -1, -1, -1];
+  return [0, 1, 0, -1].map((column, i) => cellOf(k, own[i]!, column));
+});
 
 /** From a corner's own frame (row, column) to the table's, turned k times. */
 function cellOf(k: number, ownRow: number, ownColumn: number): number {

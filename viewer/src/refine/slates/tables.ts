@@ -5,7 +5,7 @@
  */
 import { Problem } from "../../format/problem";
 import { TAGGED } from "./layout";
-import { type Mask, maskOf, SIDE_WORDS, sideMasks } from "./masks";
+import { type Mask, maskOf, sideMasks } from "./masks";
 import type { Ring } from "./ringRules";
 
 export interface MaskTables {
@@ -111,16 +111,20 @@ function normalsOf({ corners, place }: Rings, numbers: Int32Array, masks: Mask[]
 
 /** Rows of side masks by semi-sharp sharpness, and which of them each side has. */
 export function sideTables(sharp: Float64Array): { sideClass: Int32Array; sideMasks: Float64Array } {
-  const isSemi = (s: number) => s > 0 && s < Infinity;
-  const classes = [...new Set(sharp.filter(isSemi))];
-  const numbers = new Map(classes.map((s, i) => [s, i]));
+  const numbers = new Map<number, number>();
+  const sideClass = new Int32Array(sharp.length);
+  for (let h = 0; h < sharp.length; h++) {
+    const s = sharp[h]!;
+    if (!(s > 0 && s < Infinity)) continue;
+    if (!numbers.has(s)) numbers.set(s, numbers.size);
+    sideClass[h] = numbers.get(s)!;
+  }
+  const classes = [...numbers.keys()];
   const tables = classes.map(sideMasks);
   const size = tables[0]?.length ?? sideMasks(0).length;
   const out = new Float64Array(size * Math.max(1, classes.length));
   tables.forEach((table, i) => {
     out.set(table, size * i);
   });
-  return { sideClass: Int32Array.from(sharp, (s) => numbers.get(s) ?? 0), sideMasks: out };
+  return { sideClass, sideMasks: out };
 }
-
-export { SIDE_WORDS };

@@ -115,7 +115,8 @@ function edgesOf(count: number, corners: Int32Array, following: Int32Array, name
 
 /** Corners by their edge's lower, then upper vertex, then as they come: counted twice, since that is stable. */
 function byEdge(count: number, corners: Int32Array, following: Int32Array): Int32Array {
-  let order = Int32Array.from(corners.keys());
+  let order = new Int32Array(corners.length);
+  for (let h = 0; h < order.length; h++) order[h] = h;
   for (const least of [Math.max, Math.min]) {
     const keyOf = (h: number) => least(corners[h]!, corners[following[h]!]!);
     const starts = new Int32Array(count + 1);
