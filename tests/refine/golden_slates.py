@@ -3,7 +3,7 @@ meshes, at given depths and as views and rules have them.
 
     PYTHONPATH=tests python -m refine.golden_slates
 
-Only when the surface or the rules themselves change; it says which cages came out differently.
+spec/slates.md says what it holds. Only when the surface or the rules themselves change; it says which cages came out differently.
 """
 
 import hashlib

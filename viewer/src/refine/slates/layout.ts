@@ -2,7 +2,7 @@
  * Catmull-Clark surfaces tessellated in the page: what its files are, and the small numbers that they share.
  *
  * It is the twin of `src/foveal/refine/slates*.py` and `_kernels_slates*.py`, and held with them to
- * golden/slates.json (spec/refinement.md). Of `slates_X.py` and `_kernels_slates_X.py` together:
+ * golden/slates.json (spec/slates.md). Of `slates_X.py` and `_kernels_slates_X.py` together:
  *
  * | here | there |
  * | --- | --- |
