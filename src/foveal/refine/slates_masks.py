@@ -31,8 +31,8 @@ __all__ = ["Mask", "Ring", "Sector", "mask_of", "side_masks"]
 Floats = NDArray[np.float64]
 
 # Of the iteration for darts, whose second eigenvalue comes nearer to the first as 14 over the square of the
-# valence: 36 / 14 of that square give all digits, and beyond 110 faces the tangent is as near as it gets.
-_MOST_TURNS = 50_000
+# valence: 36 / 14 of that square give all digits. Beyond 110 faces the tangent is as near as it gets.
+_MOST_WORK = 5_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ def _dart(n: int) -> tuple[Floats, Floats, Floats]:
     """
     spokes = np.array([math.inf] + (n - 1) * [0.0])
     point, one, two = (row.copy() for row in _smooth(n, False))
-    turns, centres, out = min(4 * n * n + 100, _MOST_TURNS), np.empty(n), np.empty(1 + 2 * n)
+    turns, centres, out = min(4 * n * n + 100, _MOST_WORK // n), np.empty(n), np.empty(1 + 2 * n)
     kernels.settle_point(spokes, turns, point, centres, out)
     kernels.settle_tangent(spokes, turns, point, one, centres, out)
     return point, one, np.array([0.0, 0, 0, 1, -1]) if n == 2 else two

@@ -59,11 +59,15 @@ class Page {
   tick = 0;
   readonly session: PatchSession;
 
-  constructor(readonly mesh = torus(14, 9)) {
-    this.session = new PatchSession(mesh, ORIGIN, "torus.fov", () => {
+  constructor(
+    readonly mesh = torus(14, 9),
+    mostRows?: number,
+  ) {
+    const clock = () => {
       this.#now += this.tick;
       return this.#now;
-    });
+    };
+    this.session = new PatchSession(mesh, ORIGIN, "torus.fov", clock, mostRows);
   }
 
   ask(wish: Partial<Request>): WireMessage | null {
@@ -162,6 +166,25 @@ test("a budget is kept, and a rate has fewer triangles than none", () => {
   page.tick = 30;
   for (let i = 0; i < 12; i++) page.ask({ camera: cameraAt(i / 100), rate: 20, drawn_ms: 40 });
   expect(page.ask({ rate: 20 })!.triangles).toBeLessThan(free);
+});
+
+test("what was kept for views long ago is forgotten, and all is told anew", () => {
+  const page = new Page(torus(14, 9), 1);
+  const bases: number[] = [];
+  for (const [angle, away] of [
+    [0, 60],
+    [2, 1.5],
+    [4, 1.5],
+    [5, 60],
+    [5.1, 60],
+    [0.3, 1.5],
+  ]) {
+    const camera = cameraAt(angle!, away);
+    bases.push(page.ask({ camera })!.base);
+    expect(page.triangles).toEqual(fresh(page.mesh, camera));
+  }
+  expect(bases.slice(1).filter((base) => base === 0).length).toBeGreaterThan(0);
+  expect(bases.slice(1).filter((base) => base > 0).length).toBeGreaterThan(0);
 });
 
 test("an odd mesh is refused in a sentence", () => {

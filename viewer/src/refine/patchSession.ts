@@ -29,13 +29,14 @@ export class PatchSession extends Dialogue {
   protected override readonly threshold = 1;
   readonly #mesh: PolygonMesh;
   #surface: Slates;
-  #mostRows = MOST_ROWS;
+  /** 0 before the first view: what one needs may be more already. */
+  #mostRows = 0;
   #rate: FrameRate | null = null;
   #isForgotten = false;
 
   /**
    * @param origin - What positions are told relative to: the middle of the control mesh.
-   * @param clock - Milliseconds; for tests.
+   * @param clock - Milliseconds; for tests, as is `mostRows`.
    * @throws Problem if the mesh is no oriented surface, or too large for numbers of 32 bits.
    */
   constructor(
@@ -43,6 +44,7 @@ export class PatchSession extends Dialogue {
     private readonly origin: Triple,
     private readonly name: string,
     clock: () => number = () => performance.now(),
+    private readonly mostRows = MOST_ROWS,
   ) {
     super(clock);
     // About its own middle, so that rows are what is told.
@@ -71,8 +73,7 @@ export class PatchSession extends Dialogue {
     }
     const rules = request.depths ?? USUAL_DEPTHS;
     this.#surface.update(this.#viewOf(request), rules, this.#budget(request));
-    // what one view needs may be more already
-    if (this.#mostRows === 0) this.#mostRows = Math.max(MOST_ROWS, 2 * this.#surface.blocks.rows);
+    if (this.#mostRows === 0) this.#mostRows = Math.max(this.mostRows, 2 * this.#surface.blocks.rows);
     this.last = request;
     this.triangles = this.#surface.shown.triangles;
   }

@@ -47,9 +47,9 @@ function inner(n: number): LimitRows {
 
 /**
  * Of the iteration for darts, whose second eigenvalue comes nearer to the first as 14 over the square of the valence: 36 /
- * 14 of that square give all digits, and beyond 110 faces the tangent is as near as it gets.
+ * 14 of that square give all digits. Beyond 110 faces the tangent is as near as it gets in a second.
  */
-const MOST_TURNS = 50_000;
+const MOST_WORK = 5_000_000;
 
 /**
  * Left eigenvectors of the dart's own step, by pulling rows back again and again.
@@ -59,7 +59,7 @@ const MOST_TURNS = 50_000;
  */
 function dart(n: number): LimitRows {
   const ring: Ring = { faces: n, spokes: [Infinity, ...filled(n - 1, 0)], sharpness: 0 };
-  const turns = Math.min(4 * n * n + 100, MOST_TURNS);
+  const turns = Math.min(4 * n * n + 100, Math.floor(MOST_WORK / n));
   let { point, one, two } = inner(n);
   for (let i = 0; i < turns; i++) {
     const next = pulled(ring, point);

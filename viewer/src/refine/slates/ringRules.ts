@@ -17,10 +17,11 @@ export const SMOOTH = 0;
 export const CREASE = 1;
 export const CORNER = 2;
 
-/** Which rule moves the vertex. */
-export function kindOf(ring: Ring): number {
-  const sharp = sharpSpokes(ring).length;
-  if (ring.sharpness > 0 || sharp > 2) return CORNER;
+/** Which rule moves the vertex after `level` steps. */
+export function kindOf({ spokes, sharpness }: Ring, level = 0): number {
+  let sharp = 0;
+  for (const s of spokes) if (s > level) sharp++;
+  if (sharpness > level || sharp > 2) return CORNER;
   return sharp === 2 ? CREASE : SMOOTH;
 }
 
@@ -73,25 +74,24 @@ export function pulled(ring: Ring, row: Float64Array): Float64Array {
 
 /** The vertex moves by its rule; by both, weighted, in the step in which the rule changes. */
 function pullVertex(ring: Ring, weight: number, out: Float64Array, centres: Float64Array): void {
-  const then = after(ring, 1);
-  if (kindOf(ring) === kindOf(then)) {
-    pullRule(ring, weight, out, centres);
+  if (kindOf(ring) === kindOf(ring, 1)) {
+    pullRule(ring, 0, weight, out, centres);
     return;
   }
-  const ending = ring.spokes.filter((s) => s > 0 && s <= 1);
-  if (ring.sharpness > 0 && then.sharpness === 0) ending.push(ring.sharpness);
+  const ending = [...ring.spokes, ring.sharpness].filter((s) => s > 0 && s <= 1);
   const share = Math.min(ending.reduce((sum, s) => sum + s, 0) / ending.length, 1);
-  pullRule(ring, share * weight, out, centres);
-  pullRule(then, (1 - share) * weight, out, centres);
+  pullRule(ring, 0, share * weight, out, centres);
+  pullRule(ring, 1, (1 - share) * weight, out, centres);
 }
 
-function pullRule(ring: Ring, weight: number, out: Float64Array, centres: Float64Array): void {
+/** The rule after `level` steps. */
+function pullRule(ring: Ring, level: number, weight: number, out: Float64Array, centres: Float64Array): void {
   const n = ring.spokes.length;
-  const kind = kindOf(ring);
+  const kind = kindOf(ring, level);
   if (kind === CORNER) out[0]! += weight;
   else if (kind === CREASE) {
     out[0]! += 0.75 * weight;
-    for (const i of sharpSpokes(ring)) out[1 + i]! += weight / 8;
+    for (let i = 0; i < n; i++) if (ring.spokes[i]! > level) out[1 + i]! += weight / 8;
   } else {
     out[0]! += (weight * (n - 2)) / n;
     for (let i = 0; i < n; i++) {
