@@ -3,7 +3,8 @@ meshes, at given depths and as views and rules have them.
 
     PYTHONPATH=tests python -m refine.golden_slates
 
-spec/slates.md says what it holds. Only when the surface or the rules themselves change; it says which cages came out differently.
+Only when the surface or the rules themselves change; it says which cages came out differently. What it holds
+is told in spec/slates.md.
 """
 
 import hashlib

@@ -6,8 +6,9 @@
  *
  * | here | there |
  * | --- | --- |
- * | `topology.ts`, `firstStep.ts` | `topology` and the rings of `cage` |
- * | `masks.ts`, `net.ts`, `tables.ts` | `masks`, `cage` |
+ * | `topology.ts`, `firstStep.ts` | `topology`, the kernels `step` and `cage` |
+ * | `masks.ts`, `ringRules.ts`, `eigen.ts` | `masks` |
+ * | `net.ts`, `tables.ts` | `cage` |
  * | `ring.ts`, `sides.ts`, `patch.ts`, `rims.ts`, `limits.ts` | the kernels `ring`, `sides`, none, `rims`, `vertices` |
  * | `arena.ts`, `blocks.ts` | `arena`, `blocks` |
  * | `bends.ts`, `views.ts`, `rate.ts`, `placements.ts` | the kernel `depth`, `depth`, `rate`, `placements` |
