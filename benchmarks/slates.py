@@ -8,6 +8,7 @@ import tracemalloc
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import _slates_page as page
 import _slates_peer as peer
 import numpy as np
 from _refine_models import shared
@@ -174,6 +175,23 @@ def control(*, is_quick: bool) -> Iterator[Row]:
     yield Row.of("control_oscillation", "19 of 20 frames", [100 * spread], "%", "lower", bar=10.0)
 
 
+def in_page(*, is_quick: bool) -> Iterator[Row]:
+    """The page's own patches: whole messages, and the paper's scene."""
+    runs = 3 if is_quick else 9
+    for mesh, name in ((quad_torus(40, 24), "torus, 40 x 24"), cheburashka()):
+        low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+        around = [
+            Camera.around(low, high, direction=(math.sin(math.radians(a)), 0.3, math.cos(math.radians(a))))
+            for a in range(12)
+        ]
+        yield from page.rows(page.case_of(mesh, around, Depths()), name, runs=runs)
+    surface, size, case = paper_scene()
+    views = [turning(size, a) for a in range(30)]
+    data = page.case_of(surface._mesh, views, Depths(most=4), budget=100_000)
+    data["placements"] = surface._placements.matrices.reshape(-1).tolist()
+    yield from page.rows(data, case, runs=runs)
+
+
 def rows(options: argparse.Namespace, folder: Path) -> Iterator[Row]:
     """Those rows that were asked for, as they come."""
     parts: list[tuple[tuple[str, ...], Callable[[], Iterator[Row]]]] = [
@@ -184,6 +202,7 @@ def rows(options: argparse.Namespace, folder: Path) -> Iterator[Row]:
         (("frame_40x68_ms",), lambda: frames(is_quick=options.quick)),
         (("memory_mb", "memory_cage_mb"), memory),
         (("control_frames", "control_oscillation"), lambda: control(is_quick=options.quick)),
+        (("patches_page_ms",), lambda: in_page(is_quick=options.quick)),
     ]
     wanted = options.only.split(",") if options.only else None
     for keys, run in parts:

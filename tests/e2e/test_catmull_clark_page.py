@@ -1,4 +1,7 @@
-"""Catmull-Clark patches in the page: the tessellation of its camera, sharp creases, depths chosen by hand."""
+"""Catmull-Clark patches in the page: the tessellation of its camera, sharp creases, depths chosen by hand.
+
+Once with foveal's server, which tessellates then, and once of static files, where the page does it by itself.
+"""
 
 import math
 
@@ -8,16 +11,19 @@ import pytest
 import foveal
 from e2e.page import picture, stats
 from e2e.refined import FRONT, HEIGHT, WIDTH, go, press, slide
-from foveal.mesh.poly_shapes import cube
+from e2e.static_server import StaticServer
+from foveal.mesh.poly_shapes import cube, prism
 from foveal.mesh.polymesh import PolyMesh
 from foveal.refine.patch_session import warm_patches
 from foveal.refine.slates import Slates
 from foveal.scene import Scene
 from foveal.scene.cage_file import write_cage
+from foveal.scene.publish import publish
 from foveal.scene.refinement import chosen
 from foveal.scene.scene import Layer
 from foveal.server import start
 from foveal.view.camera import Camera
+from refine.cages import creased
 
 PLAIN = "#v=1&n=0"
 SIDE = {**FRONT, "position": [2.5, 3, 4.5]}
@@ -35,11 +41,22 @@ def scene(tmp_path_factory):
     return Scene("Creased", (Layer("cube", path, refinement=REFINEMENT),), background="#000000")
 
 
-@pytest.fixture
-def site(scene, viewer_folder):
-    """In the place of the static files of the other tests: foveal's server with a live layer."""
-    with start(scene, port=0, viewer=viewer_folder) as server:
-        yield server
+def published(scene, folder, viewer):
+    """The files of its site."""
+    site = publish(scene, folder, viewer=viewer)
+    return {p.relative_to(site).as_posix(): p for p in site.rglob("*") if p.is_file()}
+
+
+@pytest.fixture(params=["live", "static"])
+def site(request, scene, viewer_folder, tmp_path):
+    """In the place of the static files of the other tests: a live layer, or what was published."""
+    if request.param == "live":
+        with start(scene, port=0, viewer=viewer_folder) as server:
+            yield server
+        return
+    server = StaticServer(published(scene, tmp_path / "site", viewer_folder))
+    yield server
+    server.close()
 
 
 def camera_of(view):
@@ -124,3 +141,33 @@ def test_the_budget_is_held(open_page):
     assert stats(page)["triangles"] > 2000
     slide(page, "refined-triangles", 0)
     assert 500 < stats(page)["triangles"] <= 1000
+
+
+@pytest.fixture
+def odd_site(scene, viewer_folder, tmp_path):
+    """Quadrangles and heptagons with tags of all kinds; static files."""
+    mesh = creased(prism(7), 3)
+    write_cage(mesh, tmp_path / "odd.fov", refinement=REFINEMENT)
+    odd = Scene("Odd", (Layer("odd", tmp_path / "odd.fov", refinement=REFINEMENT),), background="#000000")
+    server = StaticServer(published(odd, tmp_path / "odd", viewer_folder))
+    yield mesh, server
+    server.close()
+
+
+@pytest.mark.parametrize("site", ["static"], indirect=True)
+def test_static_files_need_no_server_and_become_deeper_from_near(open_page, site, odd_site):
+    mesh, server = odd_site
+    site.files.clear()
+    site.files.update(server.files)
+    page = open_page(PLAIN)
+    sockets = []
+    page.on("websocket", lambda socket: sockets.append(socket.url))
+    surface, deepest = Slates(mesh), []
+    for away in (30, 8, 2.5):
+        view = {**FRONT, "position": [0.6 * away, 0.5 * away, 0.8 * away]}
+        shown = go(page, view)
+        done = surface.update(camera_of(view), depths=REFINEMENT.depths)
+        assert shown["triangles"] == pytest.approx(done.triangles, rel=0.02)
+        deepest.append((done.deepest, shown["triangles"]))
+    assert deepest == sorted(set(deepest))
+    assert sockets == []

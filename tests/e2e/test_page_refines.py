@@ -94,9 +94,8 @@ def test_a_budget_of_the_file_is_kept_by_longer_edges(open_page, site, tmp_path,
     assert shown["threshold"] > 1
 
 
-@pytest.mark.parametrize("scheme", ["loop", "catmull-clark"])
-def test_a_scheme_that_needs_a_server_is_told(open_page, site, tmp_path, viewer_folder, scheme):
-    site.files.update(published(tmp_path, viewer_folder, Refinement(scheme, CRITERIA)))
+def test_a_scheme_that_needs_a_server_is_told(open_page, site, tmp_path, viewer_folder):
+    site.files.update(published(tmp_path, viewer_folder, Refinement("loop", CRITERIA)))
     page = open_page(is_ready=False, errors_wanted=True)
     page.wait_for_function("document.body.innerText.includes('Open it with: foveal view')")
 

@@ -11,7 +11,7 @@ from foveal.mesh.polymesh import PolyMesh
 from . import _kernels_slates_cage as kernels
 from ._kernels_slates_layout import MOST_DEPTH, REGULAR, SMOOTH, TAGGED
 from .slates_masks import Mask, Ring, mask_of, side_masks
-from .slates_topology import Polygons, unending
+from .slates_topology import FirstStep, Polygons, unending
 
 __all__ = ["SlateCage", "SlateNet"]
 
@@ -91,8 +91,8 @@ class SlateCage:
     Attributes
     ----------
     net : SlateNet
-    first : sparse (n, vertices of the mesh) matrix or None
-        Makes positions of quadrangles' vertices of the mesh's.
+    first : FirstStep or None
+        Makes rows of quadrangles' vertices of the mesh's.
     faces : (m,) int64
         Which face of the mesh a quadrangle is of.
     is_shown : (m,) bool
@@ -100,7 +100,7 @@ class SlateCage:
     """
 
     net: SlateNet
-    first: Any
+    first: FirstStep | None
     faces: Ints
     is_shown: NDArray[np.bool_]
 
@@ -118,9 +118,9 @@ class SlateCage:
         return cls(_net(polygons, steps), first, faces, ~is_hole[faces])
 
     def points(self, positions: NDArray[Any], /) -> Floats:
-        """(n, d): of the quadrangles' vertices, of any columns on the mesh's."""
+        """(n, 3): of the quadrangles' vertices, of rows of three on the mesh's."""
         columns = np.ascontiguousarray(positions, np.float64)
-        return columns if self.first is None else np.ascontiguousarray(self.first @ columns)
+        return columns if self.first is None else self.first.points(columns)
 
 
 def _steps(sharpness: Floats) -> int:

@@ -1,8 +1,9 @@
 """Limit points and normals of control vertices as weights on their rings.
 
-A ring is closed under a step of subdivision. So while a vertex is semi-sharp its step is a matrix, the
-product of those until it is settled comes before the limit mask, and nothing has to be refined further than
-it is drawn: limit points of depth 0 are those of any depth. The same holds on the sides of a patch.
+A ring is closed under a step of subdivision. So while a vertex is semi-sharp the weights of its limit are
+pulled back through its steps, and nothing has to be refined further than it is drawn: limit points of depth 0
+are those of any depth. The same holds on the sides of a patch. The page has the same weights to the last bit,
+so sums are in one order and cosines are those of `turn`.
 
 A normal belongs to a sector, the faces between two sharp spokes, and is the sum of cross products of pairs of
 rows: one pair of tangents, or for corners of several faces, which have no tangent plane, the faces' areas at
@@ -21,11 +22,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _kernels_slates_masks as kernels
 from ._kernels_slates_layout import MOST_DEPTH
+from ._kernels_turn import turn
 
-__all__ = ["Mask", "Ring", "Sector", "mask_of", "ring_step", "side_masks"]
+__all__ = ["Mask", "Ring", "Sector", "mask_of", "side_masks"]
 
 Floats = NDArray[np.float64]
+
+# Of the iteration for darts, whose second eigenvalue comes nearer to the first as 14 over the square of the
+# valence: 36 / 14 of that square give all digits. Beyond 110 faces the tangent is as near as it gets.
+_MOST_WORK = 5_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,65 +102,34 @@ def mask_of(ring: Ring, settled: int, /) -> Mask:
     """The mask of a vertex; areas are those after `settled` steps."""
     if ring.faces == 0:  # a vertex of no face stays, and has no normal
         return Mask(np.ones((1, 1)), [])
-    size = 1 + len(ring.spokes) + ring.faces
-    to_limit, to_settled = np.eye(size), np.eye(size)
-    for i in range(max(settled, ring.steps)):
-        step = ring_step(ring.after(i))
-        to_limit = step @ to_limit if i < ring.steps else to_limit
-        to_settled = step @ to_settled if i < settled else to_settled
+    n = len(ring.spokes)
     last = ring.after(ring.steps)
-    rows: list[Floats] = [_limit_row(last) @ to_limit]
+    rows: list[Floats] = [_pulled(ring, _limit_row(last), ring.steps)]
     sectors = []
     for faces in _sectors(last):
         areas = []
         for f in faces:
-            first, second = f, (f + 1) % len(ring.spokes)
-            across = to_settled[1 + len(ring.spokes) + f] - to_settled[0]
-            rows += [across, to_settled[1 + second] - to_settled[1 + first]]
+            across, along = np.zeros(1 + n + ring.faces), np.zeros(1 + n + ring.faces)
+            across[1 + n + f], across[0] = 1, -1
+            along[1 + (f + 1) % n], along[1 + f] = 1, -1
+            rows += [_pulled(ring, row, settled) for row in (across, along)]
             areas.append((len(rows) - 2, len(rows) - 1))
         pairs = areas
         if last.kind != "corner" or len(faces) == 1:
-            rows += [row @ to_limit for row in _tangents(last, faces)]
+            rows += [_pulled(ring, row, ring.steps) for row in _tangents(last, faces)]
             pairs = [(len(rows) - 2, len(rows) - 1)]
         sectors.append(Sector(faces, pairs, areas))
     return Mask(np.array(rows), sectors)
 
 
-def ring_step(ring: Ring, /) -> Floats:
-    """(s, s): the vertex, e_i, f_i after a step, of those before."""
-    spokes, k = len(ring.spokes), ring.faces
-    unit = np.eye(1 + spokes + k)
-    v, e, f = unit[0], unit[1 : 1 + spokes], unit[1 + spokes :]
-    centres = [(v + e[i] + f[i] + e[(i + 1) % spokes]) / 4 for i in range(k)]
-    middles = []
-    for i, sharpness in enumerate(ring.spokes):
-        share = min(sharpness, 1.0)
-        smooth = (v + e[i] + centres[i - 1] + centres[i % k]) / 4
-        middles.append(share * (v + e[i]) / 2 + (1 - share) * smooth)
-    return np.array([_moved(ring, v, e, centres), *middles, *centres])
-
-
-def _moved(ring: Ring, v: Floats, e: Floats, centres: list[Floats]) -> Floats:
-    """By the vertex's rule; by both, weighted, in the step in which the rule changes."""
-    then = ring.after(1)
-
-    def rule(at: Ring) -> Floats:
-        if at.kind == "corner":
-            return v
-        if at.kind == "crease":
-            moved: Floats = 0.75 * v + sum(e[i] for i in at.sharp) / 8
-            return moved
-        n = len(ring.spokes)
-        around: Floats = (n - 2) / n * v + (sum(e) + sum(centres)) / n**2
-        return around
-
-    if ring.kind == then.kind:
-        return rule(ring)
-    ending = [s for s in ring.spokes if 0 < s <= 1]
-    if ring.sharpness > 0 and then.sharpness == 0:
-        ending.append(ring.sharpness)
-    share = min(sum(ending) / len(ending), 1)
-    return share * rule(ring) + (1 - share) * rule(then)
+def _pulled(ring: Ring, row: Floats, steps: int) -> Floats:
+    """Weights on a ring that give what `row` gives after so many steps."""
+    centres = np.empty(ring.faces)
+    for i in reversed(range(steps)):
+        then, out = ring.after(i), np.empty(len(row))
+        kernels.pull(ring.faces, np.array(then.spokes), float(then.sharpness), row, centres, out)
+        row = out
+    return row
 
 
 def _sectors(ring: Ring) -> list[list[int]]:
@@ -211,40 +187,25 @@ def _smooth(n: int, is_dart: bool) -> tuple[Floats, Floats, Floats]:
     point = np.array([n**2] + n * [4] + n * [1]) / (n * (n + 5))
     if n == 2:  # where the formula gives nothing: eigenvectors of its step, both for 1/4
         return point, np.array([0.0, 1, -1, 0, 0]), np.array([0.0, 0, 0, 1, -1])
-    turn = 2 * math.pi / n
-    a = 1 + math.cos(turn) + math.cos(turn / 2) * math.sqrt(2 * (9 + math.cos(turn)))
-    angle = turn * np.arange(n + 1)
-    one, two = (
-        np.concatenate([[0], a * wave[:-1], wave[:-1] + wave[1:]]) for wave in (np.cos(angle), np.sin(angle))
-    )
+    cosine = turn(1, n)[0]
+    a = 1 + cosine + turn(1, 2 * n)[0] * math.sqrt(2 * (9 + cosine))
+    waves = np.array([turn(i % n, n) for i in range(n + 1)]).T
+    one, two = (np.concatenate([[0], a * wave[:-1], wave[:-1] + wave[1:]]) for wave in waves)
     return point, one, two
 
 
 def _dart(n: int) -> tuple[Floats, Floats, Floats]:
-    """Left eigenvectors of the dart's own step, which the reflection that keeps e_0 sorts into two kinds.
+    """Left eigenvectors of the dart's own step, by pulling rows back again and again.
 
-    Of those it keeps, the first belongs to 1 and the second is the tangent along the edge; of those it turns
-    over, the first is the one across.
+    Of those that the reflection which keeps e_0 turns over, the first is the tangent across. There v and e_0
+    are nothing, so that the edge does not matter: it is the smooth vertex's.
     """
-    step = ring_step(Ring(n, (math.inf,) + (n - 1) * (0.0,)))
-    mirror = np.zeros_like(step)
-    mirror[0, 0] = 1
-    i = np.arange(n)
-    mirror[1 + i, 1 + -i % n] = 1
-    mirror[1 + n + i, 1 + n + (-1 - i) % n] = 1
-
-    def vectors(sign: int) -> NDArray[np.float64]:
-        values, found = np.linalg.eig((step @ (np.eye(len(step)) + sign * mirror) / 2).T)
-        rows: Floats = found.T[np.argsort(-abs(values))].real
-        return rows
-
-    (point, one), two = vectors(1)[:2], vectors(-1)[0]
-    angle = 2 * math.pi / n * np.concatenate([i, i + 0.5])
-    return (
-        point / point.sum(),
-        one * np.sign(one[1:] @ np.cos(angle)),
-        two * np.sign(two[1:] @ np.sin(angle)),
-    )
+    spokes = np.array([math.inf] + (n - 1) * [0.0])
+    point, one, two = (row.copy() for row in _smooth(n, False))
+    turns, centres, out = min(4 * n * n + 100, _MOST_WORK // n), np.empty(n), np.empty(1 + 2 * n)
+    kernels.settle_point(spokes, turns, point, centres, out)
+    kernels.settle_tangent(spokes, turns, point, one, centres, out)
+    return point, one, np.array([0.0, 0, 0, 1, -1]) if n == 2 else two
 
 
 @functools.cache
@@ -252,12 +213,12 @@ def across(k: int, /) -> Floats:
     """Of the tangent across a crease into a sector of k faces: v, e_0 .. e_k, f_0 .. f_(k-1)."""
     if k == 1:
         return np.array([-2.0, 1, 1, 0])
-    angle = math.pi / k
-    size = (5 + math.cos(angle) + math.cos(angle / 2) * math.sqrt(2 * (9 + math.cos(angle)))) / 16
-    a, cot = 16 * size - 4, 1 / math.tan(angle / 2)
-    centre = -(8 * size * math.sin(angle) + (8 * size - 4) * (8 * size - 1) * cot) / (4 * size - 1)
+    (cosine, sine), (half, half_sine) = turn(1, 2 * k), turn(1, 4 * k)
+    size = (5 + cosine + half * math.sqrt(2 * (9 + cosine))) / 16
+    a, cot = 16 * size - 4, half / half_sine
+    centre = -(8 * size * sine + (8 * size - 4) * (8 * size - 1) * cot) / (4 * size - 1)
     end = -(centre + (16 * size - 2) * cot) / 2
-    wave = np.sin(angle * np.arange(k + 1))
+    wave = np.array([turn(i, 2 * k)[1] for i in range(k + 1)])
     return np.array([centre, end, *(a * wave[1:-1]), end, *(wave[:-1] + wave[1:])])
 
 

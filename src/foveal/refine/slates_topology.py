@@ -1,18 +1,17 @@
 """Who is beside whom in a polygon mesh, how sharp its edges are, and its first step of Catmull-Clark."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array, diags_array, eye_array, vstack
 
 from foveal.mesh.polymesh import PolyMesh
 
 from . import _kernels_slates_cage as kernels
 from ._kernels_slates_layout import INFINITE
+from ._kernels_slates_step import step_points
 
-__all__ = ["Polygons"]
+__all__ = ["FirstStep", "Polygons", "unending"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -104,11 +103,8 @@ class Polygons:
         kernels.rings(self.corners, self.previous, self.mates, first, starts, ring, place)
         return starts, ring, place
 
-    def stepped(self) -> "tuple[Polygons, Any]":
-        """After one step: all quadrangles, old vertices first, then one an edge, then one a face.
-
-        Also the sparse matrix (new vertices, vertices) that makes the new positions of the old ones.
-        """
+    def stepped(self) -> "tuple[Polygons, FirstStep]":
+        """After one step: all quadrangles, old vertices first, then one an edge, then one a face."""
         middle, centre = self.count + self.edge, self.count + len(self.ends)
         face = np.repeat(np.arange(self.faces), np.diff(self.starts))
         quads = np.stack([self.corners, middle, centre + face, middle[self.previous]], axis=1)
@@ -123,50 +119,16 @@ class Polygons:
         after = Polygons._joined(
             count, starts, quads.reshape(-1), keys, np.repeat(left[tagged], 2), vertex_sharp
         )
-        return after, self._step_matrix(face)
+        return after, FirstStep(self, self._step_weights())
 
-    def _step_matrix(self, face: Ints) -> Any:
-        """Catmull and Clark's rules with those of DeRose, Kass and Truong for what is sharp."""
-        sizes, edges, n = np.diff(self.starts), len(self.ends), self.count
-        centres = csr_array((1 / sizes[face], (face, self.corners)), shape=(self.faces, n))
-        rows = np.arange(edges)
-        middles = csr_array(
-            (np.full(2 * edges, 0.5), (np.tile(rows, 2), self.ends.T.reshape(-1))), shape=(edges, n)
-        )
-        sides = csr_array((np.full(len(face), 0.25), (self.edge, face)), shape=(edges, self.faces))
-        share = np.minimum(self.sharp, 1)
-        edge_points = diags_array(share) @ middles + diags_array(1 - share) @ (
-            0.5 * middles + sides @ centres
-        )
-        valence = np.bincount(self.ends.reshape(-1), minlength=n)
-        around = (
-            coo_array((np.ones(len(face)), (self.corners, face)), shape=(n, self.faces)).tocsr() @ centres
-        )
-        ends = self._end_matrix(np.ones(edges))
-        smooth, now, then = self._rule_weights()
-        inverse = 1 / np.maximum(valence, 1)
-        kept = smooth * (1 - 2 * inverse) + 0.75 * (now + then) + (1 - smooth - now - then)
-        crease = diags_array(now / 8) @ self._end_matrix(self.sharp > 0)
-        later = diags_array(then / 8) @ self._end_matrix(self.sharp > 1)
-        round_about = diags_array(smooth * inverse * inverse) @ (ends + around)
-        vertex_points = diags_array(kept) @ eye_array(n) + round_about + crease + later
-        return csr_array(vstack([vertex_points, edge_points, centres]))
+    def _step_weights(self) -> Floats:
+        """(4, count): see `FirstStep`."""
 
-    def _end_matrix(self, weight: NDArray[Any]) -> Any:
-        """(count, count): which vertices edges join, as far as they weigh something."""
-        kept = np.flatnonzero(weight)
-        a, b = self.ends[kept].T
-        both = np.concatenate([a, b]), np.concatenate([b, a])
-        return csr_array((np.ones(2 * len(kept)), both), shape=(self.count, self.count))
-
-    def _rule_weights(self) -> tuple[Floats, Floats, Floats]:
-        """How much of the smooth rule, of the crease rule, and of that for the creases of the next step."""
-
-        def at_ends(weights: NDArray[Any]) -> Floats:
-            total = np.bincount(self.ends.T.reshape(-1), np.tile(weights, 2), minlength=self.count)
+        def at_ends(weights: NDArray[np.bool_] | Floats) -> Floats:
+            total = np.bincount(self.ends.reshape(-1), np.repeat(weights, 2), minlength=self.count)
             return total.astype(np.float64)
 
-        now, then = at_ends(self.sharp > 0), at_ends(self.sharp > 1)
+        valence, now, then = at_ends(self.sharp >= 0), at_ends(self.sharp > 0), at_ends(self.sharp > 1)
         corner, corner_then = self.vertex_sharp > 0, self.vertex_sharp > 1
         kinds = [
             np.where(is_corner | (sharp > 2), 2, np.where(sharp == 2, 1, 0))
@@ -177,9 +139,36 @@ class Polygons:
         total = at_ends(np.where(is_ending, self.sharp, 0)) + np.where(ends_too, self.vertex_sharp, 0)
         share = np.minimum(total / np.maximum(at_ends(is_ending) + ends_too, 1), 1)
         share = np.where(kinds[0] == kinds[1], 1, share)
-        lone = np.bincount(self.ends.reshape(-1), minlength=self.count) == 0
-        smooth = (share * (kinds[0] == 0) + (1 - share) * (kinds[1] == 0)) * ~lone
-        return smooth, share * (kinds[0] == 1), (1 - share) * (kinds[1] == 1)
+        smooth = (share * (kinds[0] == 0) + (1 - share) * (kinds[1] == 0)) * (valence > 0)
+        crease, later = share * (kinds[0] == 1), (1 - share) * (kinds[1] == 1)
+        inverse = 1 / np.maximum(valence, 1)
+        kept = smooth * (1 - 2 * inverse) + 0.75 * (crease + later) + (1 - smooth - (crease + later))
+        return np.array([kept, smooth * inverse * inverse, crease / 8, later / 8])
+
+
+@dataclass(frozen=True, slots=True)
+class FirstStep:
+    """Catmull and Clark's rules with those of DeRose, Kass and Truong for what is sharp: for rows of three.
+
+    Attributes
+    ----------
+    polygons : Polygons
+        Before it.
+    weights : (4, count) float64
+        Of each vertex: itself; all around it; its creases; those of the next step.
+    """
+
+    polygons: Polygons
+    weights: Floats
+
+    def points(self, rows: Floats, /) -> Floats:
+        """(new vertices, 3) of (vertices, 3)."""
+        old = self.polygons
+        out = np.zeros((old.count + len(old.ends) + old.faces, 3))
+        faces = old.starts, old.corners, old.edge
+        kept, around, now, later = self.weights
+        step_points(*faces, old.ends, old.sharp, kept, around, now, later, rows, out)
+        return out
 
 
 def unending(sharpness: NDArray[np.float32]) -> Floats:

@@ -33,6 +33,10 @@ Made with foveal.
 """
 
 
+_OF_THE_PAGE = ("sqrt3", "catmull-clark")
+"""Schemes that the viewer has itself."""
+
+
 def publish(
     source: Source | Scene,
     folder: PathLike,
@@ -90,10 +94,10 @@ def publish(
                 f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
             )
     for layer in scene.layers:
-        if layer.refinement is not None and layer.refinement.scheme != "sqrt3":
+        if layer.refinement is not None and layer.refinement.scheme not in _OF_THE_PAGE:
             progress.note(
-                f"{layer.name}: a page refines by sqrt3 only, so without a server it will say that "
-                f"{layer.refinement.scheme} needs one. Show it with 'foveal view'."
+                f"{layer.name}: a page refines by {' and '.join(_OF_THE_PAGE)} only, so without a server it "
+                f"will say that {layer.refinement.scheme} needs one. Show it with 'foveal view'."
             )
     names = asset_names(scene)
     total = sum(path.stat().st_size for path in names)

@@ -71,6 +71,15 @@ export interface CageInfo {
 
 export const MOST_DEPTH = 8;
 
+export const USUAL_DEPTHS: DepthRules = {
+  most: 5,
+  cone_degrees: 8,
+  backs: true,
+  silhouettes: true,
+  epsilon: 0.1,
+  size_px: [3, 24],
+};
+
 const INITIAL: Refinement = {
   scheme: "sqrt3",
   criteria: {
@@ -78,7 +87,7 @@ const INITIAL: Refinement = {
     silhouette: { iterations: 6, edge_px: 4, bend: 0 },
     back: { iterations: 0, edge_px: 0, bend: 0 },
   },
-  depths: { most: 5, cone_degrees: 8, backs: true, silhouettes: true, epsilon: 0.1, size_px: [3, 24] },
+  depths: USUAL_DEPTHS,
   positions: "control",
   budget: 0,
   rate: 0,

@@ -2,6 +2,7 @@
 import type { CageInfo } from "../format/cage";
 import { damaged } from "../format/container";
 import { crc32 } from "../format/crc32";
+import { type PolygonMesh, polygonsOf } from "../format/polygons";
 import { firstChunk, type OpenFile } from "../stream/file";
 import type { ControlMesh } from "./surface";
 
@@ -10,12 +11,39 @@ const FACE_BYTES = 12;
 
 /** @throws Problem if it cannot be fetched, or is not what the header says. */
 export async function readControlMesh(file: OpenFile, info: CageInfo): Promise<ControlMesh> {
-  const { name } = file.source;
-  const chunk = await firstChunk(file);
-  if (crc32(chunk) !== file.container.checksums[0]) throw damaged(name);
-  const mesh = controlMeshOf(chunk, info);
-  if (!mesh) throw damaged(name);
+  const mesh = controlMeshOf(await checkedChunk(file), info);
+  if (!mesh) throw damaged(file.source.name);
   return mesh;
+}
+
+/**
+ * What Catmull-Clark patches are made of: polygons, or the triangles as such.
+ *
+ * @throws Problem as `readControlMesh`.
+ */
+export async function readPolygons(file: OpenFile, info: CageInfo): Promise<PolygonMesh> {
+  const { name } = file.source;
+  if (info.polygons === undefined) return polygonsOfTriangles(await readControlMesh(file, info));
+  return polygonsOf(await checkedChunk(file), file.container.header, name);
+}
+
+async function checkedChunk(file: OpenFile): Promise<Uint8Array> {
+  const chunk = await firstChunk(file);
+  if (crc32(chunk) !== file.container.checksums[0]) throw damaged(file.source.name);
+  return chunk;
+}
+
+function polygonsOfTriangles({ positions, faces }: ControlMesh): PolygonMesh {
+  return {
+    positions,
+    starts: Int32Array.from({ length: faces.length / 3 + 1 }, (_, f) => 3 * f),
+    corners: faces,
+    creaseEdges: new Int32Array(0),
+    creaseSharpness: new Float32Array(0),
+    cornerVertices: new Int32Array(0),
+    cornerSharpness: new Float32Array(0),
+    boundary: "edge_only",
+  };
 }
 
 /** Positions as doubles, then faces; null where they do not hold together. */

@@ -1,11 +1,12 @@
 /** The one place that chooses who refines a control mesh: the server that gave out the scene, or this page. */
-import type { CageInfo, Scheme } from "../format/cage";
+import { CATMULL_CLARK, type CageInfo, type Scheme } from "../format/cage";
 import { Problem } from "../format/problem";
 import type { OpenFile } from "../stream/file";
 import { LiveSource } from "../stream/live";
 import type { RefinementSource } from "../stream/refinement";
-import { readControlMesh } from "./controlMesh";
+import { readControlMesh, readPolygons } from "./controlMesh";
 import { PageSource } from "./pageSource";
+import type { Cage } from "./sessions";
 
 /**
  * @param live - Address of the server's session, or null where there is no such server.
@@ -19,12 +20,21 @@ export async function openRefinement(
 ): Promise<RefinementSource> {
   if (live !== null) return new LiveSource(live);
   const { name } = file.source;
-  if (scheme !== "sqrt3") {
+  const start = { cage: await readCage(file, info, scheme), origin: info.origin, name };
+  return new PageSource(start, file.container.size);
+}
+
+async function readCage(file: OpenFile, info: CageInfo, scheme: Scheme): Promise<Cage> {
+  if (scheme === "sqrt3") return { scheme, mesh: await readControlMesh(file, info) };
+  if (scheme === CATMULL_CLARK && info.sharpEdges.length > 0) {
     throw new Problem(
       "version",
-      `${name} is refined (${scheme}) by a server, and this page has none. Open it with: foveal view`,
+      `${file.source.name} has sharp edges, which ${scheme} does not know. Choose sqrt3, or build it again with creases.`,
     );
   }
-  const mesh = await readControlMesh(file, info);
-  return new PageSource({ mesh, origin: info.origin, name }, file.container.size);
+  if (scheme === CATMULL_CLARK) return { scheme, mesh: await readPolygons(file, info) };
+  throw new Problem(
+    "version",
+    `${file.source.name} is refined (${scheme}) by a server, and this page has none. Open it with: foveal view`,
+  );
 }

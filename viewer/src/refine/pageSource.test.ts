@@ -4,14 +4,18 @@ import text from "../../../spec/golden/sqrt3.json?raw";
 import type { Problem } from "../format/problem";
 import type { SlotChanges } from "../format/wire";
 import type { Wish } from "../stream/refinement";
+import type { Dialogue } from "./dialogue";
 import { PageSource, type WorkerLike } from "./pageSource";
-import { RefinementSession } from "./session";
+import { sessionOf } from "./sessions";
 import type { StartMessage } from "./worker";
 
 const golden = JSON.parse(text);
 const { positions, faces } = golden.cages.torus;
 const START: StartMessage = {
-  mesh: { positions: Float64Array.from(positions), faces: Int32Array.from(faces) },
+  cage: {
+    scheme: "sqrt3",
+    mesh: { positions: Float64Array.from(positions), faces: Int32Array.from(faces) },
+  },
   origin: [0, 0, 0],
   name: "torus.fov",
 };
@@ -27,12 +31,12 @@ const WISH: Wish = {
 class FakeWorker implements WorkerLike {
   onmessage: ((event: MessageEvent) => void) | null = null;
   onerror: ((event: ErrorEvent) => void) | null = null;
-  session: RefinementSession | undefined;
+  session: Dialogue | undefined;
   isTerminated = false;
 
   postMessage(message: StartMessage | string): void {
     if (typeof message !== "string") {
-      this.session = new RefinementSession(message.mesh, message.origin, message.name);
+      this.session = sessionOf(message.cage, message.origin, message.name);
       return;
     }
     const data = this.session!.answer(JSON.parse(message));

@@ -11,14 +11,13 @@ const MAGIC = 0x014c5646;
 const HEAD_WORDS = 10;
 const SETTLED = 1;
 const LIMITS = 2;
+const NORMALS = 4;
 
 /** Changes are looked for in blocks of so many words: a range costs three words itself. */
 const BLOCK = 16;
 
-/** Faces, positions, starts and tags, as words. */
+/** Faces, positions, starts or normals, and tags, as words. */
 export type SlotWords = readonly [Uint32Array, Uint32Array, Uint32Array, Uint32Array];
-
-export const NO_SLOTS: SlotWords = [0, 1, 2, 3].map(() => new Uint32Array(0)) as unknown as SlotWords;
 
 /** The slots of a refinement, places relative to `origin`. √3 triangles are green, so tags are levels. */
 export function slotWords(refined: Sqrt3, isLimit: boolean, origin: Triple): SlotWords {
@@ -41,23 +40,41 @@ export function slotWords(refined: Sqrt3, isLimit: boolean, origin: Triple): Slo
   return [shown.faces, ...words] as unknown as SlotWords;
 }
 
+/** What a page is to have, and what of it a message brings. */
+export interface SlotParts {
+  /** Nothing that the page has counts. */
+  readonly isFresh: boolean;
+  /** The arrays in their order on the wire. */
+  readonly words: SlotWords;
+  /** Of each array begins and ends of what is sent, in words, rising. */
+  readonly bounds: readonly (readonly number[])[];
+}
+
+/** All that brings a page from the slots `was`, which may be fewer, to `now`; null for nothing. */
+export function changedParts(now: SlotWords, was: SlotWords | null): SlotParts {
+  const bounds = now.map((words, i) => changesOf(words, was?.[i] ?? NOTHING));
+  return { isFresh: was === null, words: now, bounds };
+}
+
+const NOTHING = new Uint32Array(0);
+
 export interface SlotHead {
   readonly sequence: number;
   readonly base: number;
   readonly isSettled: boolean;
   readonly isLimit: boolean;
+  readonly hasNormals: boolean;
   readonly triangles: number;
   readonly milliseconds: number;
   readonly threshold: number;
 }
 
-/** A message that brings a page from the slots `was`, which may be fewer, to `now`. */
-export function slotMessage(head: SlotHead, now: SlotWords, was: SlotWords): ArrayBuffer {
-  const changes = now.map((words, i) => changesOf(words, was[i]!));
+export function slotMessage(head: SlotHead, { words: now, bounds: changes }: SlotParts): ArrayBuffer {
   const ranges = changes.reduce((sum, bounds) => sum + bounds.length / 2, 0);
   const inner = changes.flat().reduce((sum, at, i) => sum + (i % 2 === 0 ? -at : at), 0);
   const out = new Uint32Array(HEAD_WORDS + 3 * ranges + inner);
-  const flags = (head.isSettled ? SETTLED : 0) | (head.isLimit ? LIMITS : 0);
+  const flags =
+    (head.isSettled ? SETTLED : 0) | (head.isLimit ? LIMITS : 0) | (head.hasNormals ? NORMALS : 0);
   const slots = [now[0].length / 3, now[1].length / 3];
   out.set([MAGIC, head.sequence, head.base, flags, ...slots, head.triangles, ranges]);
   new Float32Array(out.buffer).set([head.milliseconds, head.threshold], HEAD_WORDS - 2);

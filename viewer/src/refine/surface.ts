@@ -177,7 +177,7 @@ function matesOf(faces: Int32Array, count: number, name: string): Int32Array {
   return mates;
 }
 
-function edgeOf(from: number, to: number): string {
+export function edgeOf(from: number, to: number): string {
   return `the edge between vertices ${from} and ${to}`;
 }
 
@@ -230,7 +230,7 @@ function fillRing(
   return i === end;
 }
 
-function noSurface(name: string, why: string): Problem {
+export function noSurface(name: string, why: string): Problem {
   return new Problem(
     "damaged",
     `${name} holds no surface that can be refined: ${why}. Build it again with: foveal build`,

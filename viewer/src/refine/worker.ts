@@ -1,12 +1,12 @@
 /** A worker that refines: requests come in as the text of spec/wire.md, its messages go out. */
 import type { Triple } from "../format/graph";
 import { Problem } from "../format/problem";
-import { RefinementSession } from "./session";
-import type { ControlMesh } from "./surface";
+import type { Dialogue } from "./dialogue";
+import { type Cage, sessionOf } from "./sessions";
 
 /** What a worker is told first. */
 export interface StartMessage {
-  readonly mesh: ControlMesh;
+  readonly cage: Cage;
   /** What positions are told relative to. */
   readonly origin: Triple;
   /** Of the file, for sentences. */
@@ -19,7 +19,7 @@ const post = self.postMessage.bind(self) as (
 ) => void;
 
 let start: StartMessage | undefined;
-let session: RefinementSession | undefined;
+let session: Dialogue | undefined;
 
 self.onmessage = ({ data }: MessageEvent<StartMessage | string>) => {
   if (typeof data !== "string") {
@@ -28,7 +28,7 @@ self.onmessage = ({ data }: MessageEvent<StartMessage | string>) => {
   }
   try {
     // Made when it is first asked for something, so that there is somebody to hear what is wrong.
-    session ??= new RefinementSession(start!.mesh, start!.origin, start!.name);
+    session ??= sessionOf(start!.cage, start!.origin, start!.name);
     const message = session.answer(JSON.parse(data));
     if (message) post(message, [message]);
   } catch (error) {
