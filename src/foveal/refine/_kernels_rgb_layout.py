@@ -27,13 +27,13 @@ FREE_CODE, FREE = 255, -1
 WANTED, MEETS, BORN, LIMIT, PRESENT, NORMAL = 1, 2, 4, 8, 16, 32
 
 #: Places in `counts`: slots ever used, the first free ones, the queue, what there is, the clock of use, the
-#: first vertex that may have to go.
+#: first vertex that may have to go, and for `forget` where its hand is and when its last two rounds began.
 FACES, VERTICES, FREE_FACE, FREE_VERTEX, FIRST, WAITING = 0, 1, 2, 3, 4, 5
 FACES_IN_USE, PRESENT_COUNT, SPLITS, MERGES, CLOCK, SCHEME, IN_USE = 6, 7, 8, 9, 10, 11, 12
-LAST, BASE_COUNT, DOUBTFUL = 13, 14, 15
+LAST, BASE_COUNT, DOUBTFUL, HAND, ROUND, SINCE = 13, 14, 15, 16, 17, 18
 
 #: Behind them: what is being computed for something else, and pairs of ends of edges being split for others.
-STACK, CHAIN, WORDS = 16, 16 + 4096, 16 + 4096 + 512
+STACK, CHAIN, WORDS = 20, 20 + 4096, 20 + 4096 + 512
 
 LOOP, BUTTERFLY = 0, 1
 

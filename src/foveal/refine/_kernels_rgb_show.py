@@ -8,13 +8,19 @@ from foveal.base.jit import lean
 from ._kernels_rgb_address import remove
 from ._kernels_rgb_known import ASK_LIMIT
 from ._kernels_rgb_layout import (
+    BASE_COUNT,
+    CLOCK,
     FACES,
     FREE,
     FREE_CODE,
     FREE_VERTEX,
+    HAND,
     IN_USE,
     LIMIT,
     PRESENT,
+    PRESENT_COUNT,
+    ROUND,
+    SINCE,
     VERTICES,
 )
 from ._kernels_rgb_points import ensure, ensure_at, position
@@ -57,11 +63,26 @@ def place_all(net, levels, begin, is_limit, out):
 
 
 @lean
-def forget(net, slots):
-    """Free the slots of vertices that are not in the mesh."""
-    for v in slots:
-        remove(net, net.vertices[v].key)
+def forget(net, capacity):
+    """Let time go on, and keep of the vertices that are not in the mesh so many.
+
+    A hand goes around the slots; those go that were not used since it came by last. So this costs what it
+    frees: to look for the oldest of all took 3 ms of each degree of an orbit at 100,000 triangles.
+    """
+    counts = net.counts
+    counts[CLOCK] += 1
+    excess = counts[IN_USE] - counts[PRESENT_COUNT] - capacity
+    while excess > 0:  # ends in the third round, in which nothing is younger than the second
+        if counts[HAND] >= counts[VERTICES]:
+            counts[HAND], counts[SINCE], counts[ROUND] = counts[BASE_COUNT], counts[ROUND], counts[CLOCK]
+        v = counts[HAND]
+        counts[HAND] += 1
+        vertex = net.vertices[v]
+        if vertex.birth == FREE or vertex.flags & PRESENT != 0 or np.int64(vertex.stamp) >= counts[SINCE]:
+            continue
+        remove(net, vertex.key)
         net.vertices[v].birth, net.vertices[v].flags = FREE, 0
-        net.vertices[v].diamond[0] = net.counts[FREE_VERTEX]
-        net.counts[FREE_VERTEX] = v
-        net.counts[IN_USE] -= 1
+        vertex.diamond[0] = counts[FREE_VERTEX]
+        counts[FREE_VERTEX] = v
+        counts[IN_USE] -= 1
+        excess -= 1

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
+from . import _kernels_rgb_show as show
 from . import _kernels_rgb_update as kernels
 from ._kernels_rgb_layout import BUTTERFLY, FACES, FREE_CODE, LOOP, MERGES, PRESENT, SPLITS, VERTICES, WAITING
 from .cage import Cage
@@ -60,8 +61,8 @@ class Rgb:
         Loop's masks of 1987 with smooth curves as borders, or the modified butterfly, which goes through the
         control mesh's vertices.
     cached : int
-        How many vertices that are not in the mesh are kept with what is known of them, those last used; for a
-        while up to a quarter more.
+        How many vertices that are not in the mesh are kept with what is known of them, mostly those last
+        used.
     name : str
         What errors call the mesh.
 
@@ -132,7 +133,7 @@ class Rgb:
             self._step = step_within(
                 lambda step: self._bring(camera, criteria, step, budget, None), self._step
             )
-        self._state.forget(self._cached)
+        show.forget(self._state.net, self._cached)
         counts = self._state.net.counts
         done = (int(counts[SPLITS]) - splits, int(counts[MERGES]) - merges)
         if counts[WAITING] == 0 or budget is not None:

@@ -9,14 +9,12 @@ from ._kernels_rgb_layout import (
     BASE_COUNT,
     BORN,
     BUTTERFLY,
-    CLOCK,
     DOUBTFUL,
     FACES,
     FACES_IN_USE,
     FREE_FACE,
     FREE_VERTEX,
     IN_USE,
-    PRESENT,
     PRESENT_COUNT,
     SCHEME,
     VERTICES,
@@ -74,24 +72,6 @@ class State:
     def vertices(self) -> int:
         """Of the mesh."""
         return int(self.net.counts[PRESENT_COUNT])
-
-    def forget(self, capacity: int) -> None:
-        """Keep of the vertices that are not in the mesh so many, those that were used last; time goes on.
-
-        Up to a quarter more are let be: to look through all takes 3 ms at 100,000 triangles, a quarter of a
-        degree's orbit.
-        """
-        net = self.net
-        net.counts[CLOCK] += 1
-        if int(net.counts[IN_USE] - net.counts[PRESENT_COUNT]) <= capacity + capacity // 4:
-            return
-        count = int(net.counts[VERTICES])
-        vertices = net.vertices[:count]
-        outside = np.nonzero((vertices["birth"] >= 0) & (vertices["flags"] & PRESENT == 0))[0]
-        excess = len(outside) - capacity
-        stamps = net.vertices["stamp"][outside]
-        oldest = np.argpartition(stamps, excess - 1)[:excess]
-        show_kernels.forget(net, outside[oldest])
 
     def placed(self, is_limit: bool) -> NDArray[np.float64]:
         """(V, 3): where the vertices of the mesh stand on the highest level beside them, or in the limit."""
