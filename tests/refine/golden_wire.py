@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from foveal.refine.slots import Slots
-from foveal.refine.wire import Buffers, Head, buffers, message
+from foveal.refine.wire import Buffers, Head, buffers, changes, message
 from refine.wire_page import Page, wish
 
 FOLDER = Path(__file__).parents[2] / "spec" / "golden"
@@ -55,7 +55,7 @@ def messages() -> list[bytes]:
     found, sent = [], Buffers.empty()
     for head, there in zip(HEADS, session(), strict=True):
         new = buffers(there, ORIGIN)
-        found.append(message(head, new, sent if head.base else Buffers.empty()))
+        found.append(message(head, new, changes(new, sent if head.base else Buffers.empty())))
         sent = new
     return found
 

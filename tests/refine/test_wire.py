@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from foveal import FovealError
 from foveal.refine.slots import Slots
-from foveal.refine.wire import MAX_REQUEST_BYTES, Buffers, Head, buffers, message, request_of
+from foveal.refine.wire import MAX_REQUEST_BYTES, Buffers, Head, buffers, changes, message, request_of
 from refine import golden_wire
 from refine.wire_page import Page, Refused, parse, wish
 
@@ -64,8 +64,8 @@ def test_ranges_bring_a_page_from_anything_to_anything(old, new):
     new = new[: 3 * (len(new) // 3)]
     before, after = (_buffers(values) for values in (old, new))
     page = Page()
-    page.apply(message(PLAIN, before, Buffers.empty()))
-    page.apply(message(PLAIN._replace(sequence=2, base=1), after, before))
+    page.apply(message(PLAIN, before, changes(before, Buffers.empty())))
+    page.apply(message(PLAIN._replace(sequence=2, base=1), after, changes(after, before)))
     assert page.faces == [tuple(new[i : i + 3]) for i in range(0, len(new), 3)]
 
 
@@ -80,7 +80,8 @@ def test_what_did_not_change_is_not_sent():
     slots = golden_wire.slots(rng, 10_000, 5_000, 0)
     before = buffers(slots, golden_wire.ORIGIN)
     slots.positions[[17, 4_000]] += 1
-    sent = message(PLAIN._replace(base=1, sequence=2), buffers(slots, golden_wire.ORIGIN), before)
+    after = buffers(slots, golden_wire.ORIGIN)
+    sent = message(PLAIN._replace(base=1, sequence=2), after, changes(after, before))
     _, ranges = parse(sent)
     assert [number for number, _, _ in ranges] == [1, 1]
     assert len(sent) <= 40 + 2 * (12 + 128)

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from foveal.mesh.poly_shapes import cube
 from foveal.mesh.polymesh import PolyMesh
@@ -13,12 +12,13 @@ from foveal.view.camera import Camera
 
 from .dialogue import MOST_TRIANGLES, Dialogue, origin_of
 from .slates import Slates
+from .slates_arena import ranges
 from .slates_depth import Depths
 from .slates_rate import FrameRate
 from .slates_result import SlateArrays
-from .wire import Buffers, Request
+from .wire import Buffers, Head, Ranges, Request, message
 
-__all__ = ["PatchSession", "patch_buffers", "warm_patches"]
+__all__ = ["PatchSession", "changed_words", "patch_buffers", "warm_patches"]
 
 # Points are kept as deep as they were ever wanted, for all that a page ever looked at. From here on they are
 # forgotten, and all is sent anew: 72 MB.
@@ -69,6 +69,7 @@ class PatchSession(Dialogue):
         self._rate: tuple[float, FrameRate] | None = None
 
     def _begun(self) -> Slates:
+        self._is_fresh = True
         return Slates(self._mesh, dtype=np.float32, name=self._name)
 
     @property
@@ -104,24 +105,25 @@ class PatchSession(Dialogue):
     def _buffers(self, request: Request) -> Buffers:
         return patch_buffers(self._surface.arrays())
 
+    def _changed(self, slots: Buffers) -> list[Ranges] | None:
+        is_fresh, self._is_fresh = self._is_fresh, False
+        return None if is_fresh else changed_words(self._surface)
+
 
 def patch_buffers(arrays: SlateArrays, /) -> Buffers:
-    """What a page is to have, of copies: normals where starts are, depths as levels."""
-    positions, normals = (
-        array.astype("<f4", copy=True).reshape(-1).view(np.uint32)
-        for array in (arrays.positions, arrays.normals)
+    """What a page is to have, the arrays themselves as words: normals where starts are, depths as levels."""
+    words = (
+        values.reshape(-1).view(np.uint32)
+        for values in (arrays.faces, arrays.positions, arrays.normals, arrays.levels)
     )
-    tags = np.zeros(-(-len(arrays.faces) // 4) * 4, np.uint8)
-    counts, depths = arrays.counts.reshape(-1), arrays.depths.reshape(-1)
-    tags[_rows(arrays.first.reshape(-1), counts)] = np.repeat(depths.astype(np.uint8), counts)
-    faces = arrays.faces.astype("<i4", copy=True).reshape(-1).view(np.uint32)
-    return Buffers(faces, positions, normals, tags.view(np.uint32))
+    return Buffers(*words)
 
 
-def _rows(first: NDArray[np.int64], counts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """first[i], first[i] + 1, .. counts[i] of them, one run after the other."""
-    ends = np.cumsum(counts)
-    return np.repeat(first - ends + counts, counts) + np.arange(counts.sum())
+def changed_words(surface: Slates, /) -> list[Ranges]:
+    """Which words of these its last update wrote."""
+    rows, faces = surface.changed()
+    levels = ranges(faces[:, 0] // 4, -(-faces[:, 1] // 4) - faces[:, 0] // 4)
+    return [3 * faces, 3 * rows, 3 * rows, levels]
 
 
 def warm_patches() -> None:
@@ -130,4 +132,4 @@ def warm_patches() -> None:
     camera = Camera.of([3, 4, 5], [0, 0, 0])
     for budget in (200, 2000):
         surface.update(camera, depths=Depths(), budget=budget)
-    patch_buffers(surface.arrays())
+    message(Head(1, 0, True, True, 0, 0.0, 1.0), patch_buffers(surface.arrays()), changed_words(surface))

@@ -214,6 +214,7 @@ class Slates:
             shown.depths.reshape(shape),
             self._cage.faces,
             columns,
+            shown.levels,
         )
 
     def mesh(self) -> TriMesh:
