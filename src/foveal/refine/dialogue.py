@@ -43,6 +43,7 @@ class Dialogue(ABC):
     """One page's part and ours. A scheme brings its mesh to what is wanted, and says what there is then."""
 
     has_normals = False
+    has_colours = False
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
@@ -130,6 +131,7 @@ class Dialogue(ABC):
             milliseconds=milliseconds,
             threshold=self._threshold,
             has_normals=self.has_normals,
+            has_colours=self.has_colours,
         )
         whole = changes(new, Buffers.empty()) if changed is None or is_anew else changed
         sent = message(head, new, whole)

@@ -32,6 +32,7 @@ __all__ = [
 ]
 
 Words = NDArray[np.uint32]
+_NO_WORDS: Words = np.zeros(0, np.uint32)
 Ranges = NDArray[np.int64]
 """(r, 2): first and the one after the last, ascending, apart from each other."""
 
@@ -39,7 +40,7 @@ MAX_REQUEST_BYTES = 16_384
 
 _HEADER = struct.Struct("<4sIIIIIIIff")
 _MAGIC = b"FVL\x01"
-_SETTLED, _LIMIT, _NORMALS = 1, 2, 4
+_SETTLED, _LIMIT, _NORMALS, _COLOURS = 1, 2, 4, 8
 _COLOUR_SHIFT = 5
 
 #: Changes are looked for in blocks of so many words, as many as a uint64 has bytes. After 1 degree of orbit
@@ -147,17 +148,21 @@ def _criteria(data: dict[str, Any]) -> Criteria:
 
 
 class Buffers(NamedTuple):
-    """The four arrays of a message, each as (n,) uint32 words; normals may be in place of starts."""
+    """The arrays of a message, each as (n,) uint32 words.
+
+    Normals may be in place of starts; colours are one word a vertex, or none at all.
+    """
 
     faces: Words
     positions: Words
     starts: Words
     tags: Words
+    colours: Words = _NO_WORDS
 
     @classmethod
     def empty(cls) -> "Buffers":
         """Of no slots."""
-        return cls._make(np.zeros(0, np.uint32) for _ in range(4))
+        return cls(*(_NO_WORDS,) * 4)
 
     def grown(self, other: "Buffers", /) -> "Buffers":
         """The same with zeros behind, as long as those of `other`."""
@@ -191,6 +196,13 @@ class Head(NamedTuple):
     milliseconds: float
     threshold: float
     has_normals: bool = False
+    has_colours: bool = False
+
+    @property
+    def flags(self) -> int:
+        """As they are on the wire."""
+        told = _SETTLED * self.is_settled | _LIMIT * self.is_limit
+        return told | _NORMALS * self.has_normals | _COLOURS * self.has_colours
 
 
 def message(head: Head, new: Buffers, ranges: Sequence[Ranges], /) -> bytes:
@@ -206,7 +218,7 @@ def message(head: Head, new: Buffers, ranges: Sequence[Ranges], /) -> bytes:
         _MAGIC,
         head.sequence,
         head.base,
-        _SETTLED * head.is_settled | _LIMIT * head.is_limit | _NORMALS * head.has_normals,
+        head.flags,
         len(new.faces) // 3,
         len(new.positions) // 3,
         head.triangles,
