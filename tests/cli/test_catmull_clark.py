@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import trimesh
 
 from cli.stand_in import Server
 from cli.test_refine import result
@@ -64,6 +65,24 @@ def test_refine_everywhere_is_uniform(run, cage, tmp_path):
     answer = run("refine", cage, "-o", out, *SCHEME, "--everywhere", "--iterations", "9", "--force")
     assert answer.exit_code == 1
     assert "most must be a whole number from 0 to 8" in answer.stderr
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".glb"])
+def test_texture_coordinates_and_colours_are_written(run, tmp_path, suffix):
+    corners = np.array([[x, y] for y in (0.0, 1.0, 2.0) for x in (0.0, 1.0, 2.0)])
+    lines = [f"v {x} {y} 0 {x / 2} {y / 2} 0" for x, y in corners] + [
+        f"vt {x / 4} {y / 4}" for x, y in corners
+    ]
+    lines += [f"f {a}/{a} {a + 1}/{a + 1} {a + 4}/{a + 4} {a + 3}/{a + 3}" for a in (1, 2, 4, 5)]
+    (tmp_path / "sheet.obj").write_text("\n".join(lines) + "\n")
+    out = tmp_path / f"a{suffix}"
+    assert run("refine", tmp_path / "sheet.obj", "-o", out, *SCHEME, "--everywhere").exit_code == 0
+    there = trimesh.load(out, process=False)
+    there = there if suffix == ".ply" else there.geometry.popitem()[1]
+    assert np.ptp(there.visual.uv) > 0.4
+    assert abs(there.visual.uv - read_mesh(out).positions[:, :2] / 4).max() < 1e-6
+    expected = np.rint(255 * read_mesh(out).positions[:, :2] / 2)
+    assert abs(read_mesh(out).colours[:, :2].astype(float) - expected).max() <= 1
 
 
 def built(run, cage, tmp_path, *words):

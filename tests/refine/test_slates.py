@@ -189,7 +189,13 @@ def test_attributes_go_along():
     assert abs(arrays.columns[1][rows, :2] - 2 * arrays.positions[rows, :2]).max() < 1e-6
     assert (arrays.columns[0][rows] >= -1e-4).all()
     assert (arrays.columns[0][rows] <= 255.0001).all()
-    assert surface.mesh().colours.shape == surface.mesh().positions.shape
+    whole = surface.mesh()
+    assert whole.colours.shape == whole.positions.shape
+    assert abs(whole.uvs - 2 * whole.positions[:, :2]).max() < 1e-5
+    surface = Slates(PolyMesh(mesh.positions, mesh.starts, mesh.corners, uvs=mesh.uvs))
+    surface.show(1)
+    assert surface.mesh().colours is None
+    assert abs(surface.mesh().uvs - 2 * surface.mesh().positions[:, :2]).max() < 1e-5
 
 
 def test_a_mesh_shares_vertices_but_on_creases():

@@ -118,11 +118,11 @@ class PatchSession(Dialogue):
 
 def patch_buffers(arrays: SlateArrays, colours: NDArray[np.uint32], /) -> Buffers:
     """What a page is to have, the arrays themselves as words: normals where starts are, depths as levels."""
-    words = (
+    faces, positions, normals, levels = (
         values.reshape(-1).view(np.uint32)
         for values in (arrays.faces, arrays.positions, arrays.normals, arrays.levels)
     )
-    return Buffers(*words, colours[: len(arrays.positions)])
+    return Buffers(faces, positions, normals, levels, colours[: len(arrays.positions)])
 
 
 def changed_words(surface: Slates, /, *, has_colours: bool) -> list[Ranges]:
