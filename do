@@ -46,6 +46,7 @@ TAKES_A_VALUE |= {
     "--rate",
     "--radius-px",
     "--without",
+    "--prim",
 }
 TAKES_TWO = {"--radius-px"}
 

@@ -20,6 +20,21 @@ v -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 -1\nv 1 -1 
 f 1 2 4 3\nf 3 4 6 5\nf 5 6 8 7\nf 7 8 2 1\nf 2 8 6 4\nf 7 1 3 5
 """
 CREASES = "t crease 2/1/0 0 1 10\nt crease 2/1/0 1 3 10\nt crease 2/1/0 3 2 10\nt crease 2/1/0 2 0 1.5\n"
+TOWN = """\
+#usda 1.0
+def Mesh "house"
+{
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 2, 0)]
+    int[] faceVertexCounts = [4, 3]
+    int[] faceVertexIndices = [0, 1, 2, 3, 3, 2, 4]
+}
+def Mesh "shed"
+{
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+    int[] faceVertexCounts = [3]
+    int[] faceVertexIndices = [0, 1, 2]
+}
+"""
 SCHEME = ("--scheme", "catmull-clark")
 
 
@@ -65,6 +80,32 @@ def test_refine_everywhere_is_uniform(run, cage, tmp_path):
     answer = run("refine", cage, "-o", out, *SCHEME, "--everywhere", "--iterations", "9", "--force")
     assert answer.exit_code == 1
     assert "most must be a whole number from 0 to 8" in answer.stderr
+
+
+def test_triangles_are_paired(run, tmp_path):
+    write_ply(icosphere(2), tmp_path / "ball.ply")
+    answer = run("refine", tmp_path / "ball.ply", "-o", tmp_path / "a.ply", *SCHEME, "--pair-triangles")
+    assert answer.exit_code == 0
+    assert "160 quads." in answer.stderr
+    out = tmp_path / "ball.fov"
+    assert run("build", tmp_path / "ball.ply", "-o", out, *SCHEME, "--pair-triangles").exit_code == 0
+    assert read_cage(out).polygons.faces == 160
+    assert "would change nothing" in run("view", out, "--pair-triangles", "--no-browser").stderr
+
+
+def test_a_mesh_of_a_usd_file_is_chosen(run, tmp_path):
+    pytest.importorskip("pxr", reason="reading USD needs usd-core")
+    (tmp_path / "town.usda").write_text(TOWN)
+    words = ("build", tmp_path / "town.usda", "-o", tmp_path / "a.fov", *SCHEME, "--force")
+    answer = run(*words)
+    assert "it has 2 meshes, of which /house is taken. --prim names another" in answer.stderr
+    assert read_cage(tmp_path / "a.fov").polygons.faces == 2
+    answer = run(*words, "--prim", "/shed")
+    assert "meshes" not in answer.stderr
+    assert read_cage(tmp_path / "a.fov").polygons.faces == 1
+    answer = run(*words, "--prim", "/inn")
+    assert answer.exit_code == 1
+    assert "Choose one by --prim: /house, /shed." in answer.stderr
 
 
 @pytest.mark.parametrize("suffix", [".ply", ".glb"])
@@ -174,6 +215,9 @@ def test_other_schemes_leave_polygons_out_and_say_so(run, cage, tmp_path):
         ((*SCHEME, "--visible-only"), 1, "by sqrt3 only"),
         ((*SCHEME, "--mode", "filter"), 1, "one of sqrt3"),
         (("--without", "size"), 1, "sqrt3 has no rules of depth"),
+        (("--pair-triangles",), 1, "sqrt3 refines triangles as they are"),
+        ((*SCHEME, "--pair-triangles"), 1, "no two triangles side by side"),
+        ((*SCHEME, "--prim", "/a"), 1, "cube.obj: only a USD file has prims"),
     ],
 )
 def test_what_does_not_fit_is_said(run, cage, tmp_path, words, code, part):

@@ -24,7 +24,9 @@ from .options import (
     Json,
     Memory,
     Normals,
+    PairTriangles,
     Positions,
+    Prim,
     Quiet,
     RadiusPx,
     Scheme,
@@ -158,6 +160,8 @@ def refining(
     sharp_edges: SharpEdges = None,
     radius_px: RadiusPx = None,
     without: Without = None,
+    pair_triangles: PairTriangles = False,
+    prim: Prim = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
     silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
@@ -175,6 +179,8 @@ def refining(
         "positions": positions and positions.value,
         "budget": budget,
         "sharp_edges": _radians(sharp_edges),
+        "pair_triangles": pair_triangles or None,
+        "prim": prim,
     }
 
 

@@ -22,8 +22,10 @@ __all__ = [
     "ModeKind",
     "Normals",
     "NormalsKind",
+    "PairTriangles",
     "Positions",
     "PositionsKind",
+    "Prim",
     "Quiet",
     "RadiusPx",
     "RuleKind",
@@ -230,6 +232,20 @@ Without = Annotated[
     typer.Option(
         case_sensitive=False,
         help="Leave out this rule for the depth of patches; may be repeated. For catmull-clark.",
+    ),
+]
+PairTriangles = Annotated[
+    bool,
+    typer.Option(
+        "--pair-triangles",
+        help="Join triangles in pairs to quads first: half the patches. For catmull-clark.",
+    ),
+]
+Prim = Annotated[
+    str | None,
+    typer.Option(
+        metavar="PATH",
+        help="Which mesh of a USD file, such as /town/house; by default the first. For catmull-clark.",
     ),
 ]
 SharpEdges = Annotated[

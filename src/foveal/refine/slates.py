@@ -42,7 +42,7 @@ class Slates:
         Where the surface stands: matrices from its own space to that of the camera, invertible, the last row
         0 0 0 1. Each placement has its own depths and triangles; all share points and normals.
     pair_triangles : bool
-        Of a TriMesh: join triangles in pairs first, as `paired` does. Half the patches, on another surface.
+        Join triangles in pairs first, as `paired` does. Half the patches, on another surface.
     dtype : float64 or float32
         Of positions and normals that come out; all is computed in float64.
     name : str
@@ -75,14 +75,9 @@ class Slates:
         dtype: DTypeLike = np.float64,
         name: str = "mesh",
     ) -> None:
-        if isinstance(mesh, TriMesh):
-            triangles = PolyMesh.of_triangles(mesh).checked(name)
-            polygons = paired(mesh) if pair_triangles else triangles
-        elif pair_triangles:
-            raise ValueError("pair_triangles is for a TriMesh")
-        else:
-            polygons = mesh
-        self._mesh, self._name = polygons.checked(name), name
+        polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
+        checked = polygons.checked(name)
+        self._mesh, self._name = paired(checked) if pair_triangles else checked, name
         if np.dtype(dtype) not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
         self._cage = SlateCage.of(self._mesh)

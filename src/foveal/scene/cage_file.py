@@ -14,6 +14,7 @@ from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
 
 from .cage_polygons import PolygonCounts, polygons_chunk, polygons_header, polygons_of
+from .control_mesh import ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, refinement_json, refinement_of
 
@@ -21,65 +22,11 @@ if TYPE_CHECKING:  # which knows of kernels: half a second for those who show pa
     from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.trimesh import TriMesh
 
-__all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
+__all__ = ["CageReport", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
 KIND, VERSION, POLYGONS_VERSION = "cage", 1, 2
 _MOST_SHARP = 500_000  # their list is part of the header, of which 16 MiB are read
 _MOST = 1 << 26  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
-
-
-@dataclass(frozen=True, slots=True)
-class ControlMesh:
-    """What a `.fov` of kind "cage" holds.
-
-    Attributes
-    ----------
-    mesh : TriMesh
-        Positions and faces only; of polygons their fans.
-    refinement : Refinement
-        What is meant where nothing else is chosen.
-    up : "x", "y" or "z"
-    sharp : (k, 2) int32 or None
-        The vertices of edges that stay sharp, where there are any.
-    polygons : PolyMesh or None
-        What it is made of where that is more than triangles, for catmull-clark.
-    """
-
-    mesh: "TriMesh"
-    refinement: Refinement
-    up: str
-    sharp: NDArray[np.int32] | None = None
-    polygons: "PolyMesh | None" = None
-
-    @classmethod
-    def of_polygons(cls, polygons: "PolyMesh", refinement: Refinement, up: str, /) -> "ControlMesh":
-        """One of polygons."""
-        return cls(polygons.triangulated(), refinement, up, None, polygons)
-
-    def surface(self) -> "PolyMesh":
-        """The polygons, or the triangles as such."""
-        from foveal.mesh.polymesh import PolyMesh
-
-        return self.polygons or PolyMesh.of_triangles(self.mesh)
-
-    def refuse_misfit(self, scheme: str, name: str, /) -> None:
-        """Say that it cannot be refined by a scheme.
-
-        Raises
-        ------
-        FovealError
-            If it has what the scheme does not know.
-        """
-        has, known = None, "sqrt3"
-        if self.sharp is not None and scheme != "sqrt3":
-            has = "sharp edges"
-        elif self.polygons is not None and scheme != CATMULL_CLARK:
-            has, known = "polygons and their creases", CATMULL_CLARK
-        if has:
-            raise FovealError(
-                f"{name}: it has {has}, which {scheme} does not know. Choose {known}, or build it anew by "
-                f"{scheme}, which leaves them out."
-            )
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from foveal.container import Container
 
 if TYPE_CHECKING:
     from foveal.mesh.polymesh import PolyMesh
-    from foveal.mesh.trimesh import TriMesh
 
 __all__ = [
     "PolygonCounts",
@@ -21,7 +19,6 @@ __all__ = [
     "polygons_chunk",
     "polygons_header",
     "polygons_of",
-    "read_polygons",
     "told",
 ]
 
@@ -109,28 +106,6 @@ def has_border(mesh: "PolyMesh", /) -> bool:
     ends = np.stack([corners, corners[following]])
     edges = np.unique(ends.min(axis=0) * len(mesh.positions) + ends.max(axis=0))
     return 2 * len(edges) != len(corners)
-
-
-def read_polygons(source: "Path | TriMesh", name: str, /) -> "PolyMesh":
-    """The polygons of a mesh file with their tags; the triangles of a `.fov` of patches or of a mesh, welded.
-
-    Raises
-    ------
-    FovealError
-        If the file cannot be read, or is no surface.
-    """
-    from foveal.mesh.polymesh import PolyMesh
-
-    from .read import read
-
-    if isinstance(source, Path) and source.suffix.lower() != ".fov":
-        from foveal.mesh.io import read_polygons
-
-        return read_polygons(source)
-    from foveal.mesh.topology import weld
-
-    mesh = read(source) if isinstance(source, Path) else source
-    return PolyMesh.of_triangles(weld(mesh)[0]).checked(name)
 
 
 def polygons_header(mesh: "PolyMesh", /) -> dict[str, Any]:

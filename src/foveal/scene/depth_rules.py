@@ -1,4 +1,4 @@
-"""The depth rules of Catmull-Clark patches: chosen in Python or at the command line."""
+"""What Catmull-Clark patches have alone, above all depth rules: chosen in Python or at the command line."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,7 +9,7 @@ from foveal.base.errors import FovealError
 if TYPE_CHECKING:
     from foveal.refine.slates_depth import Depths
 
-__all__ = ["CATMULL_CLARK", "RULES", "depths_with"]
+__all__ = ["CATMULL_CLARK", "OF_POLYGONS", "RULES", "depths_with", "is_chosen", "refuse_of_polygons"]
 
 CATMULL_CLARK = "catmull-clark"
 
@@ -21,7 +21,38 @@ RULES: Mapping[str, Mapping[str, Any]] = {
 }
 """What leaves each rule out."""
 
+OF_POLYGONS = {
+    "depths": "has no rules of depth",
+    "pair_triangles": "refines triangles as they are",
+    "prim": "reads no USD",
+}
+"""Options of catmull-clark alone, and why another scheme has no use for each."""
+
 _OF_CRITERIA = {"iterations": "most", "bend": "cone"}  # of front faces: they mean the same of patches
+
+
+def is_chosen(options: Mapping[str, Any], name: str, /) -> bool:
+    """Whether an option says anything: None is the default, and False chooses nothing.
+
+    Examples
+    --------
+    >>> is_chosen({"prim": None, "pair_triangles": True}, "pair_triangles")
+    True
+    """
+    return options.get(name) is not None and options[name] is not False
+
+
+def refuse_of_polygons(scheme: str, options: Mapping[str, Any], /) -> None:
+    """Say that something was chosen that only catmull-clark has.
+
+    Raises
+    ------
+    FovealError
+        If so.
+    """
+    for name, why in OF_POLYGONS.items():
+        if is_chosen(options, name):
+            raise FovealError(f"{scheme} {why}. Choose {CATMULL_CLARK}, or leave {name} out.")
 
 
 def depths_with(base: "Depths | None", options: Mapping[str, Any], /) -> "Depths":

@@ -11,7 +11,7 @@ from foveal.scene.depth_rules import CATMULL_CLARK
 
 if TYPE_CHECKING:
     from foveal.refine.dialogue import Dialogue
-    from foveal.scene.cage_file import ControlMesh
+    from foveal.scene.control_mesh import ControlMesh
 
 __all__ = ["begun", "warm"]
 

@@ -13,10 +13,9 @@ from .blocks import MeshSource, VertexBlock
 from .detect import detect
 from .obj_tags import read_obj_tags
 from .source import mesh_of, open_source
+from .usd import SUFFIXES, read_usd
 
 __all__ = ["read_polygons"]
-
-_USD = {".usd", ".usda", ".usdc", ".usdz"}
 
 
 def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -> PolyMesh:
@@ -43,9 +42,7 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
         If the file cannot be read, or is no surface: see `PolyMesh.checked`.
     """
     path = Path(path)
-    if path.suffix.lower() in _USD:
-        from .usd import read_usd
-
+    if path.suffix.lower() in SUFFIXES:
         return read_usd(path, prim=prim)
     if prim is not None:
         raise ValueError(f"only a USD file has prims, got {path.name}")
