@@ -47,6 +47,7 @@ TAKES_A_VALUE |= {
     "--radius-px",
     "--without",
     "--prim",
+    "--placements",
 }
 TAKES_TWO = {"--radius-px"}
 

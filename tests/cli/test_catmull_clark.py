@@ -93,6 +93,24 @@ def test_triangles_are_paired(run, tmp_path):
     assert "would change nothing" in run("view", out, "--pair-triangles", "--no-browser").stderr
 
 
+def test_one_cage_in_many_places(run, cage, tmp_path):
+    places = np.tile(np.eye(4), (3, 1, 1))
+    places[:, 0, 3] = [0, 3, 6]
+    (tmp_path / "places.json").write_text(json.dumps(places.tolist()))
+    words = (*SCHEME, "--placements", tmp_path / "places.json")
+    fov = built(run, cage, tmp_path, *words[2:])
+    assert "placements   3" in run("info", fov).stdout
+    answer = run("refine", cage, "-o", tmp_path / "a.ply", *words, "--everywhere", "--iterations", "1")
+    assert "1 sharp corner, in 3 places." in answer.stderr
+    assert len(read_mesh(tmp_path / "a.ply").faces) == 3 * 48
+    assert run("render", cage, "-o", tmp_path / "a.png", *words, "--size", "64x48").exit_code == 0
+    (tmp_path / "places.json").write_text(json.dumps([*places.tolist(), np.zeros((4, 4)).tolist()]))
+    for verb in ("build", "view", "render", "refine", "publish"):
+        answer = run(verb, cage, *(() if verb == "view" else ("-o", tmp_path / "b")), *words)
+        assert answer.exit_code == 1
+        assert "places.json: placement 3, counted from 0, has a last row" in answer.stderr
+
+
 def test_a_mesh_of_a_usd_file_is_chosen(run, tmp_path):
     pytest.importorskip("pxr", reason="reading USD needs usd-core")
     (tmp_path / "town.usda").write_text(TOWN)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -25,6 +26,7 @@ from .options import (
     Memory,
     Normals,
     PairTriangles,
+    PlacementsFile,
     Positions,
     Prim,
     Quiet,
@@ -44,6 +46,9 @@ from .report import Reporter, reporter
 from .result import print_json, print_lines
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from foveal.base.tasks import Executor
     from foveal.scene.build import BuildOptions
     from foveal.scene.refinement import RefineOptions
@@ -162,6 +167,7 @@ def refining(
     without: Without = None,
     pair_triangles: PairTriangles = False,
     prim: Prim = None,
+    placements: PlacementsFile = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
     silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
@@ -181,7 +187,14 @@ def refining(
         "sharp_edges": _radians(sharp_edges),
         "pair_triangles": pair_triangles or None,
         "prim": prim,
+        "placements": None if placements is None else _read_placements(placements),
     }
+
+
+def _read_placements(path: Path) -> "NDArray[np.float64]":
+    from foveal.scene.cage_options import read_placements
+
+    return read_placements(path)
 
 
 def _depths(radius_px: tuple[float, float] | None, without: list[str]) -> dict[str, Any] | None:

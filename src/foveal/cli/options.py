@@ -23,6 +23,7 @@ __all__ = [
     "Normals",
     "NormalsKind",
     "PairTriangles",
+    "PlacementsFile",
     "Positions",
     "PositionsKind",
     "Prim",
@@ -239,6 +240,15 @@ PairTriangles = Annotated[
     typer.Option(
         "--pair-triangles",
         help="Join triangles in pairs to quads first: half the patches. For catmull-clark.",
+    ),
+]
+PlacementsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--placements",
+        metavar="FILE.json",
+        help="Where the cage stands: an array of 4 x 4 matrices, row by row. For catmull-clark.",
+        readable=False,
     ),
 ]
 Prim = Annotated[

@@ -25,7 +25,7 @@ def joined(arrays: SlateArrays, placements: NDArray[np.float64], /, *, has_colou
         points.append(arrays.positions[rows].astype(np.float64) @ linear.T + matrix[:3, 3])
         turned = arrays.normals[rows].astype(np.float64) @ np.linalg.inv(linear)
         normals.append(_unit(turned))
-        faces.append(index.reshape(-1, 3)[:, :: -1 if np.linalg.det(linear) < 0 else 1] + base)
+        faces.append(index.reshape(-1, 3)[:, :: -1 if np.linalg.slogdet(linear).sign < 0 else 1] + base)
         if has_colours:
             colours.append(np.rint(arrays.columns[0][rows]).clip(0, 255).astype(np.uint8))
         if has_uvs:

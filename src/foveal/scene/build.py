@@ -89,7 +89,7 @@ def build(
     scheme : "sqrt3", "loop", "butterfly" or "catmull-clark", optional
         Keep the mesh as a control mesh, to be refined by this scheme where it is looked at; for
         catmull-clark its polygons, creases and corners.
-    criteria, depths, positions, budget, rate, sharp_edges, pair_triangles, prim
+    criteria, depths, positions, budget, rate, sharp_edges, pair_triangles, prim, placements
         With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
@@ -162,7 +162,7 @@ def _build_cage(
             cage = cage.with_options(options, name)
     elif refinement.scheme == CATMULL_CLARK:
         polygons = polygons_with(mesh, options, progress=progress)
-        cage = ControlMesh.of_polygons(polygons, refinement, "y")
+        cage = ControlMesh.of_polygons(polygons, refinement, "y").with_placements(options, name)
     else:
         if isinstance(mesh, PolyMesh):
             _tell_polygons(mesh, refinement.scheme, progress)
@@ -179,6 +179,7 @@ def _build_cage(
         refinement=cage.refinement,
         up=options.get("up") or cage.up,
         sharp_edges=sharp if angle is None else angle,
+        placements=cage.placements if refinement.scheme == CATMULL_CLARK else None,
         name=name,
     )
     if report.welded:

@@ -1,10 +1,14 @@
-"""What is chosen of polygons when a control mesh is made of them: which of a file's, triangles in pairs."""
+"""What is chosen of polygons when a control mesh is made of them: which of a file's, pairs, placements."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from foveal.base.errors import FovealError
+from foveal.base.files import PathLike, read_json
 from foveal.base.progress import SILENT, Progress
 
 from .depth_rules import is_chosen
@@ -13,7 +17,18 @@ from .source import Checked, name_of
 if TYPE_CHECKING:
     from foveal.mesh.polymesh import PolyMesh
 
-__all__ = ["polygons_with", "read_polygons", "with_pairs"]
+__all__ = [
+    "MOST_CORNERS",
+    "placements_of",
+    "placements_with",
+    "polygons_with",
+    "read_placements",
+    "read_polygons",
+    "with_pairs",
+]
+
+MOST_CORNERS = 1 << 26
+"""Of all polygons in all their places, as of those of a control mesh that stands in one."""
 
 
 def polygons_with(
@@ -49,6 +64,66 @@ def with_pairs(mesh: "PolyMesh", options: Mapping[str, Any], name: str, /) -> "P
             "Leave pair_triangles out."
         )
     return found
+
+
+def placements_with(mesh: "PolyMesh", options: Mapping[str, Any], name: str, /) -> NDArray[np.float64] | None:
+    """The `placements` that are chosen of a mesh, checked, or None.
+
+    Raises
+    ------
+    FovealError
+        As `placements_of` does.
+    """
+    given = options.get("placements")
+    return None if given is None else placements_of(given, mesh, name)
+
+
+def placements_of(given: ArrayLike, mesh: "PolyMesh", name: str, /) -> NDArray[np.float64]:
+    """(k, 4, 4): matrices that are sure to place a mesh.
+
+    Raises
+    ------
+    FovealError
+        If one is none, which is named by its number, or there are too many, or they lead beyond float64.
+    """
+    from foveal.refine.slates_placements import Placements, placed
+
+    matrices = Placements.of(given, name=name).matrices
+    if len(matrices) * len(mesh.corners) > MOST_CORNERS:
+        raise FovealError(
+            f"{name}: {len(matrices):,} placements of {len(mesh.corners):,} corners are more than the "
+            f"{MOST_CORNERS:,} of a control mesh. Give fewer."
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        is_there = np.isfinite(placed(mesh, matrices).positions).all(axis=1)
+    if not is_there.all():
+        number = int(is_there.argmin()) // len(mesh.positions)
+        raise FovealError(f"{name}: placement {number}, counted from 0, leads beyond what numbers can say.")
+    return matrices
+
+
+def read_placements(path: PathLike, /) -> NDArray[np.float64]:
+    """(k, 4, 4): the matrices of a JSON file, an array of them, each four rows of four numbers.
+
+    Raises
+    ------
+    FovealError
+        If it cannot be read, or one is no such matrix, which is named by its number.
+    """
+    from foveal.refine.slates_placements import Placements
+
+    data = read_json(path)
+    if not isinstance(data, list) or not data:
+        raise FovealError(f"{path}: placements must be an array of matrices, each four rows of four numbers.")
+    for number, matrix in enumerate(data):
+        rows = matrix if isinstance(matrix, list) else []
+        is_right = len(rows) == 4 and all(isinstance(row, list) and len(row) == 4 for row in rows)
+        if not is_right or not all(type(x) in (int, float) for row in rows for x in row):
+            raise FovealError(
+                f"{path}: placement {number}, counted from 0, is not four rows of four numbers, such as "
+                "[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], which moves by 5 along x."
+            )
+    return Placements.of(data, name=str(path)).matrices
 
 
 def read_polygons(source: Checked, /, *, prim: str | None = None, progress: Progress = SILENT) -> "PolyMesh":

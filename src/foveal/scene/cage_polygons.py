@@ -168,7 +168,7 @@ def polygons_of(
         raise damaged("attributes")
     widths = [_ATTRIBUTES[name] for name in attributes]
     data = file.chunk(0)
-    if len(file) != 1 or len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n):
+    if len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n):
         raise damaged("lengths")
     at = 0
 

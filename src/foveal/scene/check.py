@@ -91,6 +91,7 @@ def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
             "triangles": len(cage.mesh.faces),
             "vertices": len(cage.mesh.positions),
             "polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons)),
+            "placements": 1 if cage.placements is None else len(cage.placements),
             "is_closed": not has_border(cage.polygons),
         }
     surface = Cage.of(cage.mesh, name=str(path))

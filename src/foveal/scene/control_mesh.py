@@ -34,6 +34,8 @@ class ControlMesh:
         The vertices of edges that stay sharp, where there are any.
     polygons : PolyMesh or None
         What it is made of where that is more than triangles, for catmull-clark.
+    placements : (k, 4, 4) float64 or None
+        Where the polygons stand, if not once and where they are. `mesh` is all of them, in place.
     """
 
     mesh: "TriMesh"
@@ -41,31 +43,64 @@ class ControlMesh:
     up: str
     sharp: NDArray[np.int32] | None = None
     polygons: "PolyMesh | None" = None
+    placements: NDArray[np.float64] | None = None
 
     @classmethod
-    def of_polygons(cls, polygons: "PolyMesh", refinement: Refinement, up: str, /) -> "ControlMesh":
+    def of_polygons(
+        cls,
+        polygons: "PolyMesh",
+        refinement: Refinement,
+        up: str,
+        /,
+        *,
+        placements: NDArray[np.float64] | None = None,
+    ) -> "ControlMesh":
         """One of polygons."""
-        return cls(polygons.triangulated(), refinement, up, None, polygons)
+        mesh = _in_place(polygons, placements).triangulated()
+        return cls(mesh, refinement, up, None, polygons, placements)
 
-    def with_options(self, options: Mapping[str, Any], name: str, /) -> "ControlMesh":
-        """The same with triangles in pairs, where `pair_triangles` is chosen; for catmull-clark.
+    def with_placements(self, options: Mapping[str, Any], name: str, /) -> "ControlMesh":
+        """The same where the chosen `placements` have it, if any are.
 
         Raises
         ------
         FovealError
-            If there is no pair, or a prim is chosen, since the file is not the USD it came from.
+            If one is no placement.
+        """
+        from .cage_options import placements_with
+
+        polygons = self.surface()
+        chosen = placements_with(polygons, options, name)
+        if chosen is None:
+            return self
+        return self.of_polygons(polygons, self.refinement, self.up, placements=chosen)
+
+    def with_options(self, options: Mapping[str, Any], name: str, /) -> "ControlMesh":
+        """The same with what is chosen of `pair_triangles` and `placements`; for catmull-clark.
+
+        Raises
+        ------
+        FovealError
+            If there is no pair, one is no placement, or a prim is chosen, since the file is not the USD it
+            came from.
         """
         from .cage_options import with_pairs
 
         if is_chosen(options, "prim"):
             raise FovealError(f"{name}: only a USD file has prims to choose from. Leave prim out.")
-        return self.of_polygons(with_pairs(self.surface(), options, name), self.refinement, self.up)
+        polygons = with_pairs(self.surface(), options, name)
+        cage = self.of_polygons(polygons, self.refinement, self.up, placements=self.placements)
+        return cage.with_placements(options, name)
 
     def surface(self) -> "PolyMesh":
-        """The polygons, or the triangles as such."""
+        """The polygons, once and where they are, or the triangles as such."""
         from foveal.mesh.polymesh import PolyMesh
 
         return self.polygons or PolyMesh.of_triangles(self.mesh)
+
+    def in_place(self) -> "PolyMesh":
+        """The polygons in all their places, as one mesh."""
+        return _in_place(self.surface(), self.placements)
 
     def refuse_misfit(self, scheme: str, name: str, /) -> None:
         """Say that it cannot be refined by a scheme.
@@ -85,3 +120,9 @@ class ControlMesh:
                 f"{name}: it has {has}, which {scheme} does not know. Choose {known}, or build it anew by "
                 f"{scheme}, which leaves them out."
             )
+
+
+def _in_place(polygons: "PolyMesh", placements: NDArray[np.float64] | None) -> "PolyMesh":
+    from foveal.refine.slates_placements import placed
+
+    return polygons if placements is None else placed(polygons, placements)

@@ -25,6 +25,7 @@ OF_POLYGONS = {
     "depths": "has no rules of depth",
     "pair_triangles": "refines triangles as they are",
     "prim": "reads no USD",
+    "placements": "refines in one place only",
 }
 """Options of catmull-clark alone, and why another scheme has no use for each."""
 

@@ -137,6 +137,7 @@ def _cage_info(file: Container, size: int) -> dict[str, Any]:
         **(
             {} if cage.polygons is None else {"polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons))}
         ),
+        **({} if cage.placements is None else {"placements": len(cage.placements)}),
         **refinement_json(cage.refinement),
         "generator": file.header.get("generator"),
     }

@@ -36,7 +36,7 @@ def patched(
     def work() -> TriMesh:
         from foveal.refine.slates import Slates
 
-        surface = Slates(cage.surface(), name=name)
+        surface = Slates(cage.surface(), placements=cage.placements, name=name)
         budget = min(refinement.budget or most, most)
         surface.update(camera, depths=depths_with(refinement.depths, {}), budget=budget)
         return surface.mesh()
@@ -59,7 +59,7 @@ def uniformly(cage: ControlMesh, name: str, /) -> Refinement:
     surface = cage.surface()
     has_quads_only = bool((np.diff(surface.starts) == 4).all())
     patches = surface.faces if has_quads_only else len(surface.corners)
-    count = patches * 2 * 4**depth
+    count = patches * 2 * 4**depth * (1 if cage.placements is None else len(cage.placements))
     most = most_triangles(CATMULL_CLARK)
     if count > most and not cage.refinement.budget:
         raise FovealError(

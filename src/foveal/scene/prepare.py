@@ -37,7 +37,7 @@ CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
 # The options that change the bytes of a build.
-_SHAPING = ("bits", "step", "normals", "up", "sharp_edges", "pair_triangles", "prim")
+_SHAPING = ("bits", "step", "normals", "up", "sharp_edges", "pair_triangles", "prim", "placements")
 _REFINING = (
     "criteria",
     "depths",
@@ -139,7 +139,7 @@ def prepare(
         return source
     if chosen(options) is not None:  # how else it is refined the scene says, so one file will do
         options = cast(BuildOptions, {k: v for k, v in options.items() if k not in _REFINING})
-    shaping = {name: options.get(name) for name in (*_SHAPING, "scheme")}
+    shaping = {name: _words(options.get(name)) for name in (*_SHAPING, "scheme")}
     if isinstance(source, Path):
         refuse_missing(source)
         name = f"{_stem(source)}-{_fingerprint(source, shaping)}"
@@ -156,6 +156,13 @@ def prepare(
     build(source, built, progress=progress, **options)
     _forget_oldest(root, limit_bytes, keep=built)
     return built
+
+
+def _words(value: object) -> object:
+    """An option, written out in full."""
+    return (
+        value if value is None or isinstance(value, (str, bool, int, float)) else np.asarray(value).tolist()
+    )
 
 
 def _refuse_unwritable(root: Path) -> None:

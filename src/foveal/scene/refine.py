@@ -103,7 +103,8 @@ def refine(
         camera = read_camera(camera)
     cage = _cage(source, name, up, options, progress)
     if cage.polygons is not None:
-        progress.note(f"{name}: {told(PolygonCounts.of(cage.polygons))}.")
+        places = "" if cage.placements is None else f", in {len(cage.placements):,} places"
+        progress.note(f"{name}: {told(PolygonCounts.of(cage.polygons))}{places}.")
     tell_inside_out(cage.mesh, name, progress)
     if mode == "filter" and (everywhere or visible_only):
         what = "everywhere" if everywhere else "visible_only"
@@ -142,7 +143,8 @@ def _cage(
     assert refinement is not None
     if refinement.scheme == CATMULL_CLARK:
         polygons = polygons_with(source, options, progress=progress)
-        return ControlMesh.of_polygons(polygons, refinement, up_of({"up": up}))
+        cage = ControlMesh.of_polygons(polygons, refinement, up_of({"up": up}))
+        return cage.with_placements(options, name)
     welded = weld(triangles_of(source))[0]
     return ControlMesh(welded, refinement, up_of({"up": up}), _sharp(welded, options, None))
 

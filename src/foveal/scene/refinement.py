@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
+from numpy.typing import ArrayLike
+
 from foveal.base.errors import FovealError
 
 from .depth_rules import CATMULL_CLARK, OF_POLYGONS, depths_with, is_chosen, refuse_of_polygons
@@ -45,6 +47,9 @@ class RefineOptions(TypedDict, total=False):
     pair_triangles : bool
         Join triangles in pairs to quadrangles before all else, for catmull-clark: half the patches, on
         another surface. Kept in a `.fov` as polygons.
+    placements : (k, 4, 4) float
+        Where the control mesh stands, for catmull-clark: matrices from its own space, the last row 0 0 0 1.
+        Each placement has its own depths. Kept in a `.fov`.
     prim : str
         Of a USD file with several meshes the path of one, such as "/town/house", for catmull-clark.
     """
@@ -58,6 +63,7 @@ class RefineOptions(TypedDict, total=False):
     sharp_edges: float | None
     pair_triangles: bool | None
     prim: str | None
+    placements: ArrayLike | None
 
 
 @dataclass(frozen=True, slots=True)

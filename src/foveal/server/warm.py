@@ -62,7 +62,7 @@ def begun(cage: "ControlMesh", scheme: str, name: str, /) -> "Dialogue":
     if scheme == CATMULL_CLARK:
         from foveal.refine.patch_session import PatchSession
 
-        return PatchSession(cage.surface(), name=name)
+        return PatchSession(cage.in_place(), name=name)
     from foveal.refine.session import Session
 
     return Session(cage.mesh, scheme=cast(Any, scheme), sharp=cage.sharp, name=name)
