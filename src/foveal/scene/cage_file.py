@@ -13,9 +13,8 @@ from foveal.base.files import PathLike
 from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
 
-from .cage_options import MOST_CORNERS, placements_of, placements_with
 from .cage_polygons import PolygonCounts, polygons_chunk, polygons_header, polygons_of
-from .control_mesh import ControlMesh
+from .control_mesh import MOST_CORNERS, ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, refinement_json, refinement_of
 
@@ -27,7 +26,7 @@ __all__ = ["CageReport", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
 KIND, VERSION, POLYGONS_VERSION = "cage", 1, 2
 _MOST_SHARP = 500_000  # their list is part of the header, of which 16 MiB are read
-_MOST = MOST_CORNERS  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
+_MOST = MOST_CORNERS  # of vertices, of triangles
 
 
 @dataclass(frozen=True)
@@ -118,6 +117,8 @@ def _write_polygons(
     placements: ArrayLike | None,
     name: str,
 ) -> CageReport:
+    from .cage_options import placements_with
+
     if refinement.scheme != CATMULL_CLARK:
         raise FovealError(f"{name}: polygons are refined by {CATMULL_CLARK} alone. Choose that.")
     counts = polygons_header(mesh)
@@ -206,6 +207,8 @@ def control_mesh(file: Container, /) -> ControlMesh:
 
 def _placements(file: Container, mesh: "PolyMesh") -> "NDArray[np.float64] | None":
     """(k, 4, 4), or None where the polygons stand once, where they are."""
+    from .cage_options import placements_of
+
     count = _count(file, "placements") if "placements" in file.header else 0
     if len(file) != (2 if count else 1):
         raise _damaged(file, "lengths")

@@ -11,6 +11,7 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, read_json
 from foveal.base.progress import SILENT, Progress
 
+from .control_mesh import MOST_CORNERS
 from .depth_rules import is_chosen
 from .source import Checked, name_of
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from foveal.mesh.polymesh import PolyMesh
 
 __all__ = [
-    "MOST_CORNERS",
     "placements_of",
     "placements_with",
     "polygons_with",
@@ -26,9 +26,6 @@ __all__ = [
     "read_polygons",
     "with_pairs",
 ]
-
-MOST_CORNERS = 1 << 26
-"""Of all polygons in all their places, as of those of a control mesh that stands in one."""
 
 
 def polygons_with(

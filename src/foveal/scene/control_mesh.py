@@ -16,7 +16,10 @@ if TYPE_CHECKING:  # which knows of kernels: half a second for those who show pa
     from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.trimesh import TriMesh
 
-__all__ = ["ControlMesh"]
+__all__ = ["MOST_CORNERS", "ControlMesh"]
+
+MOST_CORNERS = 1 << 26
+"""Of all polygons in all their places: what a chunk can hold, and more than anybody refines."""
 
 
 @dataclass(frozen=True, slots=True)
