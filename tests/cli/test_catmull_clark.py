@@ -78,8 +78,23 @@ def test_refine_everywhere_is_uniform(run, cage, tmp_path):
     budget = result(run("refine", cage, "-o", out, *SCHEME, *words, "--budget", "500", "--force"))
     assert 250 < budget["triangles"] <= 500
     answer = run("refine", cage, "-o", out, *SCHEME, "--everywhere", "--iterations", "9", "--force")
+    assert answer.exit_code == 2
+    assert "--iterations" in answer.stderr
+    assert "catmull-clark knows 8 at most, got 9" in answer.stderr
+    fov = built(run, cage, tmp_path)
+    answer = run("refine", fov, "-o", out, "--everywhere", "--iterations", "9", "--force")
     assert answer.exit_code == 1
-    assert "most must be a whole number from 0 to 8" in answer.stderr
+    assert "catmull-clark knows 0 to 8 iterations, got 9" in answer.stderr
+
+
+def test_what_memory_holds_is_told(run, cage, tmp_path, monkeypatch):
+    monkeypatch.setattr("foveal.scene.patched.most_triangles", lambda scheme: 700)
+    words = ("refine", cage, "-o", tmp_path / "a.ply", *SCHEME, "--force", "--json")
+    answer = run(*words)
+    assert 350 < result(answer)["triangles"] <= 700
+    assert "coarser than the rules have it, within the 700 triangles that would do here" in answer.stderr
+    for more in (("--budget", "600"), ("--iterations", "1")):
+        assert "coarser than" not in run(*words, *more).stderr
 
 
 def test_triangles_are_paired(run, tmp_path):

@@ -14,8 +14,10 @@ from foveal.container import open_container
 from foveal.mesh.poly_shapes import cube, quad_torus
 from foveal.mesh.shapes import icosphere
 from foveal.refine import Criteria
+from foveal.refine import _kernels_slates_layout as layout
 from foveal.refine.depth_words import depths_json
 from foveal.refine.slates_depth import Depths
+from foveal.scene import depth_rules
 from foveal.scene.cage_file import read_cage, write_cage
 from foveal.scene.cage_polygons import PolygonCounts
 from foveal.scene.refinement import Refinement, chosen, refinement_json, refinement_of
@@ -158,6 +160,7 @@ def test_polygons_are_of_one_scheme(tmp_path):
 
 
 def test_options_of_patches():
+    assert depth_rules.MOST_DEPTH == layout.MOST_DEPTH
     mapped = chosen({"scheme": "catmull-clark", "criteria": {"front": {"iterations": 3, "bend": 0.25}}})
     assert mapped.depths == Depths(most=3, cone=0.25)
     assert mapped.positions == "limit"
@@ -174,7 +177,10 @@ def test_options_of_patches():
         ({"scheme": "catmull-clark", "criteria": {"front": {"edge_px": 3}}}, "no length of edges"),
         ({"scheme": "catmull-clark", "criteria": {"back": {"iterations": 3}}}, "no numbers apart"),
         ({"scheme": "catmull-clark", "criteria": Criteria()}, "Choose depths instead"),
-        ({"scheme": "catmull-clark", "criteria": {"front": {"iterations": 9}}}, "most must be"),
+        (
+            {"scheme": "catmull-clark", "criteria": {"front": {"iterations": 9}}},
+            "knows 0 to 8 iterations, got 9",
+        ),
         ({"scheme": "catmull-clark", "positions": "control"}, "limit surface only"),
         ({"scheme": "catmull-clark", "sharp_edges": 0.5}, "keeps the creases of the file"),
         ({"scheme": "sqrt3", "depths": {"most": 3}}, "sqrt3 has no rules of depth"),

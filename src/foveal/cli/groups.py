@@ -32,6 +32,7 @@ from .options import (
     Quiet,
     RadiusPx,
     Scheme,
+    SchemeKind,
     SharpEdges,
     SilhouetteBend,
     SilhouetteEdgePx,
@@ -170,6 +171,7 @@ def refining(
     placements: PlacementsFile = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
+    _refuse_iterations(scheme, iterations)
     silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
     front = (iterations, edge_px, _radians(bend))
     regions = {"front": front, "silhouette": silhouette, "back": (back_iterations,)}
@@ -189,6 +191,15 @@ def refining(
         "prim": prim,
         "placements": None if placements is None else _read_placements(placements),
     }
+
+
+def _refuse_iterations(scheme: SchemeKind | None, iterations: int | None) -> None:
+    from foveal.scene.depth_rules import CATMULL_CLARK, MOST_DEPTH
+
+    if scheme is not None and scheme.value == CATMULL_CLARK and (iterations or 0) > MOST_DEPTH:
+        raise typer.BadParameter(
+            f"{CATMULL_CLARK} knows {MOST_DEPTH} at most, got {iterations}.", param_hint="--iterations"
+        )
 
 
 def _read_placements(path: Path) -> "NDArray[np.float64]":

@@ -120,8 +120,8 @@ class Slates:
         """
         self._move(positions, placements)
         look = self._views.look(camera, depths or Depths(), self._placements)
-        chosen = look.depths() if budget is None else look.within(budget)
-        return self._show(chosen)
+        chosen, is_capped = (look.depths(), False) if budget is None else look.within(budget)
+        return self._show(chosen, is_capped=is_capped)
 
     def show(self, depths: ArrayLike, /, *, positions: ArrayLike | None = None) -> Tessellated:
         """Tessellate at given depths.
@@ -165,11 +165,12 @@ class Slates:
                 )
             self._views.move(*self._blocks.move(points))
 
-    def _show(self, depths: NDArray[np.int8]) -> Tessellated:
+    def _show(self, depths: NDArray[np.int8], *, is_capped: bool = False) -> Tessellated:
         sides = self._shown.along_sides(depths)
         is_elsewhere, patches = self._blocks.ensure(*self._shown.wanted(depths, sides))
         renewed = self._shown.show(depths, sides, self._blocks.places, is_elsewhere)
-        return Tessellated(self._shown.triangles, len(patches), len(renewed), int(depths.max(initial=-1)))
+        deepest = int(depths.max(initial=-1))
+        return Tessellated(self._shown.triangles, len(patches), len(renewed), deepest, is_capped)
 
     def changed(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Which rows of `arrays` the last update wrote: of positions, normals and columns, and of faces.

@@ -23,12 +23,15 @@ class Tessellated:
         Patches of placements whose triangles were written anew.
     deepest : int
         The largest depth shown.
+    is_capped : bool
+        Whether the budget left patches coarser than the rules have them.
     """
 
     triangles: int
     patches: int
     renewed: int
     deepest: int
+    is_capped: bool = False
 
 
 class SlateArrays(NamedTuple):

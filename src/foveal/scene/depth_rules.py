@@ -9,9 +9,18 @@ from foveal.base.errors import FovealError
 if TYPE_CHECKING:
     from foveal.refine.slates_depth import Depths
 
-__all__ = ["CATMULL_CLARK", "OF_POLYGONS", "RULES", "depths_with", "is_chosen", "refuse_of_polygons"]
+__all__ = [
+    "CATMULL_CLARK",
+    "MOST_DEPTH",
+    "OF_POLYGONS",
+    "RULES",
+    "depths_with",
+    "is_chosen",
+    "refuse_of_polygons",
+]
 
 CATMULL_CLARK = "catmull-clark"
+MOST_DEPTH = 8
 
 RULES: Mapping[str, Mapping[str, Any]] = {
     "curvature": {"cone": None},
@@ -96,6 +105,11 @@ def _of_criteria(criteria: Any) -> dict[str, Any]:
         raise FovealError(
             f"{CATMULL_CLARK} knows iterations and bend, but no length of edges, and no numbers apart for "
             "silhouettes and back faces. Choose depths instead: a range of radii, rules to leave out."
+        )
+    times = front.get("iterations", 0)
+    if not 0 <= times <= MOST_DEPTH:
+        raise FovealError(
+            f"{CATMULL_CLARK} knows 0 to {MOST_DEPTH} iterations, got {times}. Choose one of these."
         )
     found = {_OF_CRITERIA[key]: value for key, value in front.items()}
     return {**found, "cone": found["cone"] or None} if "cone" in found else found
