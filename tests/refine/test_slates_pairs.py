@@ -1,5 +1,7 @@
 """Triangles paired into quadrangles: each once, on the same surface, few left over."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,8 @@ def test_other_faces_and_creases_stay():
     surface = Slates(mesh, pair_triangles=True)
     assert surface.patches == 3
     assert paired(quad_torus(5, 4)).faces == 20  # nothing to pair
+    holed = paired(replace(mesh, holes=np.array([2, 4], np.int32)))
+    assert sorted(map(sorted, rows(holed))) == [[0, 1, 3, 4], [0, 1, 5, 6], [1, 2, 4], [2, 3, 4]]
+    assert holed.holes.tolist() == [2, 3]
+    holed = paired(replace(mesh, holes=np.array([4], np.int32)))
+    assert [len(rows(holed)), holed.holes.tolist()] == [3, [2]]

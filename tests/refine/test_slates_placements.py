@@ -5,6 +5,7 @@ import pytest
 
 from foveal import FovealError
 from foveal.mesh.poly_shapes import cube
+from foveal.mesh.polymesh import PolyMesh
 from foveal.refine.slates import Slates
 from foveal.refine.slates_placements import Placements, placed
 from refine.cages import CAGES
@@ -60,6 +61,8 @@ def test_tags_and_attributes_are_of_each_copy():
         part = slice(k * len(mesh.crease_edges), (k + 1) * len(mesh.crease_edges))
         assert (copies.crease_edges[part] == mesh.crease_edges + k * n).all()
         assert (copies.crease_sharpness[part] == mesh.crease_sharpness).all()
+    holed = placed(PolyMesh.of(cube().positions, cube().corners.reshape(-1, 4), holes=[1, 5]), MATRICES)
+    assert holed.holes.tolist() == [1, 5, 7, 11, 13, 17, 19, 23]
     assert len(copies.corner_vertices) == 4 * len(mesh.corner_vertices)
     np.testing.assert_allclose(
         copies.positions[2 * n : 3 * n], mesh.positions @ LEANT[:3, :3].T + LEANT[:3, 3], atol=1e-12

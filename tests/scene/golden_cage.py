@@ -82,7 +82,7 @@ PATCHES = Refinement(
 def write_polygons() -> None:
     """A file of polygons."""
     write_cage(POLYGONS, FOLDER / "cage_polygons.fov", refinement=PATCHES, up="z")
-    fields = [field for field in POLYGONS.__dataclass_fields__ if field != "boundary"]
+    fields = [field for field in POLYGONS.__dataclass_fields__ if field not in ("boundary", "holes")]
     data = {
         **{field: getattr(POLYGONS, field).tolist() for field in fields},
         "crease_sharpness": [min(s, 2.0**100) for s in POLYGONS.crease_sharpness.tolist()],  # JSON has no inf

@@ -83,7 +83,7 @@ class Views:
 
     def __init__(self, cage: SlateCage, blocks: Blocks, /) -> None:
         self._cage, self._blocks = cage, blocks
-        self._is_open = bool((cage.net.mates < 0).any())
+        self._is_open = bool((cage.net.mates < 0).any()) or not cage.is_shown.all()
         self._cosines: Floats | None = None
         self._curvature: tuple[tuple[float | None, int], Levels] | None = None
         self._balls: Floats | None = None

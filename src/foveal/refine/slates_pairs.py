@@ -23,7 +23,7 @@ def paired(mesh: TriMesh | PolyMesh, /) -> PolyMesh:
     """Triangles joined across edges, those first that make the squarest and flattest quadrangles.
 
     Then pairs are changed along paths as long as that joins two triangles that are left over, so that on most
-    closed meshes none is. Other faces stay as they are, and so do triangles that meet at a crease.
+    closed meshes none is. Other faces and holes stay as they are, and so do triangles that meet at a crease.
 
     Parameters
     ----------
@@ -38,7 +38,9 @@ def paired(mesh: TriMesh | PolyMesh, /) -> PolyMesh:
     """
     polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
     starts, corners = polygons.starts.astype(np.int64), polygons.corners.astype(np.int64)
-    triangles = np.flatnonzero(np.diff(starts) == 3)
+    is_hole = np.zeros(polygons.faces, np.bool_)
+    is_hole[polygons.holes] = True
+    triangles = np.flatnonzero((np.diff(starts) == 3) & ~is_hole)
     faces = corners[starts[triangles, None] + np.arange(3)]
     first, second = _smooth(polygons, faces, *_beside(faces, len(polygons.positions)))
     order = np.argsort(_badness(polygons.positions, faces, first, second), kind="stable")
@@ -50,9 +52,14 @@ def paired(mesh: TriMesh | PolyMesh, /) -> PolyMesh:
             h, apex = beside[f][g] % 3, faces[g, (beside[g][f] + 2) % 3]
             rows[triangles[f]] = np.array([faces[f, h], apex, faces[f, (h + 1) % 3], faces[f, (h + 2) % 3]])
             gone.append(triangles[g])
-    kept = [rows[f] for f in np.delete(np.arange(len(rows)), gone)]
-    sizes = np.cumsum([0, *map(len, kept)])
-    return replace(polygons, starts=sizes.astype(np.int32), corners=np.concatenate(kept).astype(np.int32))
+    kept = np.delete(np.arange(len(rows)), gone)
+    left = [rows[f] for f in kept]
+    return replace(
+        polygons,
+        starts=np.cumsum([0, *map(len, left)]).astype(np.int32),
+        corners=np.concatenate(left).astype(np.int32),
+        holes=np.flatnonzero(is_hole[kept]).astype(np.int32),
+    )
 
 
 def _mates(first: list[int], second: list[int], count: int) -> tuple[list[dict[int, int]], list[int]]:

@@ -100,11 +100,12 @@ def placed(mesh: PolyMesh, placements: ArrayLike, /) -> PolyMesh:
         corner_sharpness=np.tile(mesh.corner_sharpness, k),
         colours=None if mesh.colours is None else np.tile(mesh.colours, (k, 1)),
         uvs=None if mesh.uvs is None else np.tile(mesh.uvs, (k, 1)),
+        holes=_numbered(mesh.holes, k, mesh.faces),
     )
 
 
-def _numbered(vertices: NDArray[np.int32], times: int, count: int) -> NDArray[np.int32]:
-    """Those of all copies of a mesh of so many vertices."""
-    shift = np.repeat(np.arange(times) * count, len(vertices))
-    copies = np.concatenate([vertices] * times)
-    return (copies + shift.reshape(-1, *(1,) * (vertices.ndim - 1))).astype(np.int32)
+def _numbered(own: NDArray[np.int32], times: int, count: int) -> NDArray[np.int32]:
+    """Those of all copies of a mesh of so many vertices, or faces."""
+    shift = np.repeat(np.arange(times) * count, len(own))
+    copies = np.concatenate([own] * times)
+    return (copies + shift.reshape(-1, *(1,) * (own.ndim - 1))).astype(np.int32)

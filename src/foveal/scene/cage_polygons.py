@@ -36,6 +36,8 @@ class PolygonCounts:
     creases, semi_sharp, corners : int
         Edges tagged sharp, those of them that become smooth after some steps, and vertices tagged sharp.
     boundary : "edge_only", "edge_and_corner" or "none"
+    holes : int
+        Faces that are left out.
     """
 
     triangles: int
@@ -45,6 +47,7 @@ class PolygonCounts:
     semi_sharp: int
     corners: int
     boundary: str
+    holes: int = 0
 
     @classmethod
     def of(cls, mesh: "PolyMesh", /) -> "PolygonCounts":
@@ -67,6 +70,7 @@ class PolygonCounts:
             semi_sharp=int(((sharp > 0) & (sharp < INFINITELY_SHARP)).sum()),
             corners=int((mesh.corner_sharpness > 0).sum()),
             boundary=mesh.boundary,
+            holes=len(mesh.holes),
         )
 
 
@@ -87,7 +91,13 @@ def told(counts: PolygonCounts, /) -> str:
         creases = [f"{creases[0]} ({counts.semi_sharp:,} semi-sharp)"]
     faces = [*some(counts.quads, "quad"), *some(counts.triangles, "triangle")]
     return ", ".join(
-        [*faces, *some(counts.larger, "larger polygon"), *creases, *some(counts.corners, "sharp corner")]
+        [
+            *faces,
+            *some(counts.larger, "larger polygon"),
+            *some(counts.holes, "hole"),
+            *creases,
+            *some(counts.corners, "sharp corner"),
+        ]
     )
 
 
@@ -119,6 +129,7 @@ def polygons_header(mesh: "PolyMesh", /) -> dict[str, Any]:
         "creases": len(mesh.crease_edges),
         "sharp_corners": len(mesh.corner_vertices),
         "boundary": mesh.boundary,
+        **({"holes": len(mesh.holes)} if len(mesh.holes) else {}),
         "attributes": [name for name, values in attributes.items() if values is not None],
     }
 
@@ -134,6 +145,7 @@ def polygons_chunk(mesh: "PolyMesh", /) -> bytes:
         ("<u4", mesh.corner_vertices),
         ("<f4", mesh.corner_sharpness),
         *(("<f4", values) for values in (mesh.colours, mesh.uvs) if values is not None),
+        ("<u4", mesh.holes),
     ]
     return b"".join(np.ascontiguousarray(values).astype(kind).tobytes() for kind, values in columns)
 
@@ -168,7 +180,8 @@ def polygons_of(
         raise damaged("attributes")
     widths = [_ATTRIBUTES[name] for name in attributes]
     data = file.chunk(0)
-    if len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n):
+    h = count("holes") if "holes" in file.header else 0
+    if len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n + h):
         raise damaged("lengths")
     at = 0
 
@@ -185,4 +198,5 @@ def polygons_of(
     tags = column("<u4", k), column("<u4", c, 2), column("<f4", c), column("<u4", p), column("<f4", p)
     further = {name: column("<f4", n, width) for name, width in zip(attributes, widths, strict=True)}
     parts: list[Any] = [positions, starts, *tags, boundary, further.get("colour"), further.get("uv")]
+    parts.append(column("<u4", h))
     return PolyMesh(*parts).checked(file.name)

@@ -92,7 +92,7 @@ def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
             "vertices": len(cage.mesh.positions),
             "polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons)),
             "placements": 1 if cage.placements is None else len(cage.placements),
-            "is_closed": not has_border(cage.polygons),
+            "is_closed": not has_border(cage.polygons) and len(cage.polygons.holes) == 0,
         }
     surface = Cage.of(cage.mesh, name=str(path))
     Cage.of(cage.mesh, sharp=cage.sharp, name=str(path))

@@ -70,6 +70,13 @@ def test_an_animation_is_read_at_its_first_frame(tmp_path):
     assert read(tmp_path, text).positions[0].tolist() == [0, 0, -1]
 
 
+def test_holes(tmp_path):
+    assert read(tmp_path, house("int[] holeIndices = [1]")).holes.tolist() == [1]
+    assert read(tmp_path, HOUSE).holes.tolist() == []
+    with pytest.raises(FovealError, match="face 2 is to be a hole, but faces go from 0 to 1"):
+        read(tmp_path, house("int[] holeIndices = [2]"))
+
+
 def test_all_meshes_are_named(tmp_path):
     with pytest.raises(
         FovealError, match=r'no Mesh "/town" in it\. Choose one by --prim: /town/house, /town/shed\.'

@@ -27,8 +27,8 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
     """Read a Mesh of a USD file, of its first frame, in its own axes, without the transforms above it.
 
     Kept are points, faces (turned round where the orientation is left-handed), creases, corners,
-    interpolateBoundary, and of the primvars displayColor and st where they have one value a vertex (or, as
-    a colour, one for all); holes are no holes here. It needs the extra `usd`.
+    interpolateBoundary, holes, and of the primvars displayColor and st where they have one value a vertex
+    (or, as a colour, one for all). It needs the extra `usd`.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
     parts: list[Any] = [points, *_faces(mesh, name), *_creases(mesh, name)]
     parts += [_values(mesh.GetCornerIndicesAttr()), _values(mesh.GetCornerSharpnessesAttr())]
     parts += [_boundary(mesh, name), _colours(primvars, len(points))]
-    parts += [_of_vertices(primvars.GetPrimvar("st"), len(points))]
+    parts += [_of_vertices(primvars.GetPrimvar("st"), len(points)), _values(mesh.GetHoleIndicesAttr())]
     return PolyMesh(*parts).checked(name)
 
 
