@@ -75,7 +75,7 @@ def placed(mesh: PolyMesh, placements: ArrayLike, /) -> PolyMesh:
     --------
     >>> from foveal.mesh.poly_shapes import cube
     >>> twice = placed(cube(), [np.eye(4), np.diag([-2.0, 1, 1, 1])])
-    >>> twice.faces, twice.positions[:, 0].min(), twice.checked().faces
+    >>> twice.faces, twice.positions[:, 0].min().tolist(), twice.checked().faces
     (12, -2.0, 12)
     """
     matrices = np.asarray(placements, np.float64)
