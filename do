@@ -46,6 +46,8 @@ TAKES_A_VALUE |= {
     "--rate",
     "--radius-px",
     "--without",
+    "--prim",
+    "--placements",
 }
 TAKES_TWO = {"--radius-px"}
 

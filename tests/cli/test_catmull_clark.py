@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import trimesh
 
 from cli.stand_in import Server
 from cli.test_refine import result
@@ -19,6 +20,21 @@ v -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 -1\nv 1 -1 
 f 1 2 4 3\nf 3 4 6 5\nf 5 6 8 7\nf 7 8 2 1\nf 2 8 6 4\nf 7 1 3 5
 """
 CREASES = "t crease 2/1/0 0 1 10\nt crease 2/1/0 1 3 10\nt crease 2/1/0 3 2 10\nt crease 2/1/0 2 0 1.5\n"
+TOWN = """\
+#usda 1.0
+def Mesh "house"
+{
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 2, 0)]
+    int[] faceVertexCounts = [4, 3]
+    int[] faceVertexIndices = [0, 1, 2, 3, 3, 2, 4]
+}
+def Mesh "shed"
+{
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
+    int[] faceVertexCounts = [3]
+    int[] faceVertexIndices = [0, 1, 2]
+}
+"""
 SCHEME = ("--scheme", "catmull-clark")
 
 
@@ -62,8 +78,85 @@ def test_refine_everywhere_is_uniform(run, cage, tmp_path):
     budget = result(run("refine", cage, "-o", out, *SCHEME, *words, "--budget", "500", "--force"))
     assert 250 < budget["triangles"] <= 500
     answer = run("refine", cage, "-o", out, *SCHEME, "--everywhere", "--iterations", "9", "--force")
+    assert answer.exit_code == 2
+    assert "--iterations" in answer.stderr
+    assert "catmull-clark knows 8 at most, got 9" in answer.stderr
+    fov = built(run, cage, tmp_path)
+    answer = run("refine", fov, "-o", out, "--everywhere", "--iterations", "9", "--force")
     assert answer.exit_code == 1
-    assert "most must be a whole number from 0 to 8" in answer.stderr
+    assert "catmull-clark knows 0 to 8 iterations, got 9" in answer.stderr
+
+
+def test_what_memory_holds_is_told(run, cage, tmp_path, monkeypatch):
+    monkeypatch.setattr("foveal.scene.patched.most_triangles", lambda scheme: 700)
+    words = ("refine", cage, "-o", tmp_path / "a.ply", *SCHEME, "--force", "--json")
+    answer = run(*words)
+    assert 350 < result(answer)["triangles"] <= 700
+    assert "coarser than the rules have it, within the 700 triangles that would do here" in answer.stderr
+    for more in (("--budget", "600"), ("--iterations", "1")):
+        assert "coarser than" not in run(*words, *more).stderr
+
+
+def test_triangles_are_paired(run, tmp_path):
+    write_ply(icosphere(2), tmp_path / "ball.ply")
+    answer = run("refine", tmp_path / "ball.ply", "-o", tmp_path / "a.ply", *SCHEME, "--pair-triangles")
+    assert answer.exit_code == 0
+    assert "160 quads." in answer.stderr
+    out = tmp_path / "ball.fov"
+    assert run("build", tmp_path / "ball.ply", "-o", out, *SCHEME, "--pair-triangles").exit_code == 0
+    assert read_cage(out).polygons.faces == 160
+    assert "would change nothing" in run("view", out, "--pair-triangles", "--no-browser").stderr
+
+
+def test_one_cage_in_many_places(run, cage, tmp_path):
+    places = np.tile(np.eye(4), (3, 1, 1))
+    places[:, 0, 3] = [0, 3, 6]
+    (tmp_path / "places.json").write_text(json.dumps(places.tolist()))
+    words = (*SCHEME, "--placements", tmp_path / "places.json")
+    fov = built(run, cage, tmp_path, *words[2:])
+    assert "placements   3" in run("info", fov).stdout
+    answer = run("refine", cage, "-o", tmp_path / "a.ply", *words, "--everywhere", "--iterations", "1")
+    assert "1 sharp corner, in 3 places." in answer.stderr
+    assert len(read_mesh(tmp_path / "a.ply").faces) == 3 * 48
+    assert run("render", cage, "-o", tmp_path / "a.png", *words, "--size", "64x48").exit_code == 0
+    (tmp_path / "places.json").write_text(json.dumps([*places.tolist(), np.zeros((4, 4)).tolist()]))
+    for verb in ("build", "view", "render", "refine", "publish"):
+        answer = run(verb, cage, *(() if verb == "view" else ("-o", tmp_path / "b")), *words)
+        assert answer.exit_code == 1
+        assert "places.json: placement 3, counted from 0, has a last row" in answer.stderr
+
+
+def test_a_mesh_of_a_usd_file_is_chosen(run, tmp_path):
+    pytest.importorskip("pxr", reason="reading USD needs usd-core")
+    (tmp_path / "town.usda").write_text(TOWN)
+    words = ("build", tmp_path / "town.usda", "-o", tmp_path / "a.fov", *SCHEME, "--force")
+    answer = run(*words)
+    assert "it has 2 meshes, of which /house is taken. --prim names another" in answer.stderr
+    assert read_cage(tmp_path / "a.fov").polygons.faces == 2
+    answer = run(*words, "--prim", "/shed")
+    assert "meshes" not in answer.stderr
+    assert read_cage(tmp_path / "a.fov").polygons.faces == 1
+    answer = run(*words, "--prim", "/inn")
+    assert answer.exit_code == 1
+    assert "Choose one by --prim: /house, /shed." in answer.stderr
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".glb"])
+def test_texture_coordinates_and_colours_are_written(run, tmp_path, suffix):
+    corners = np.array([[x, y] for y in (0.0, 1.0, 2.0) for x in (0.0, 1.0, 2.0)])
+    lines = [f"v {x} {y} 0 {x / 2} {y / 2} 0" for x, y in corners] + [
+        f"vt {x / 4} {y / 4}" for x, y in corners
+    ]
+    lines += [f"f {a}/{a} {a + 1}/{a + 1} {a + 4}/{a + 4} {a + 3}/{a + 3}" for a in (1, 2, 4, 5)]
+    (tmp_path / "sheet.obj").write_text("\n".join(lines) + "\n")
+    out = tmp_path / f"a{suffix}"
+    assert run("refine", tmp_path / "sheet.obj", "-o", out, *SCHEME, "--everywhere").exit_code == 0
+    there = trimesh.load(out, process=False)
+    there = there if suffix == ".ply" else there.geometry.popitem()[1]
+    assert np.ptp(there.visual.uv) > 0.4
+    assert abs(there.visual.uv - read_mesh(out).positions[:, :2] / 4).max() < 1e-6
+    expected = np.rint(255 * read_mesh(out).positions[:, :2] / 2)
+    assert abs(read_mesh(out).colours[:, :2].astype(float) - expected).max() <= 1
 
 
 def built(run, cage, tmp_path, *words):
@@ -155,6 +248,9 @@ def test_other_schemes_leave_polygons_out_and_say_so(run, cage, tmp_path):
         ((*SCHEME, "--visible-only"), 1, "by sqrt3 only"),
         ((*SCHEME, "--mode", "filter"), 1, "one of sqrt3"),
         (("--without", "size"), 1, "sqrt3 has no rules of depth"),
+        (("--pair-triangles",), 1, "sqrt3 refines triangles as they are"),
+        ((*SCHEME, "--pair-triangles"), 1, "no two triangles side by side"),
+        ((*SCHEME, "--prim", "/a"), 1, "cube.obj: only a USD file has prims"),
     ],
 )
 def test_what_does_not_fit_is_said(run, cage, tmp_path, words, code, part):

@@ -54,7 +54,7 @@ def test_the_dragon_is_shown_where_no_file_is_named(do, monkeypatch, words, is_d
 
 
 def test_it_knows_which_options_take_a_value(do):
-    flags = {"no_browser", "json", "quiet", "verbose", "debug", "return", "file"}
+    flags = {"no_browser", "json", "quiet", "verbose", "debug", "return", "file", "pair_triangles"}
     known = {name.removeprefix("--").replace("-", "_") for name in do.TAKES_A_VALUE}
     assert known == {"bind" if name == "host" else name for name in set(view.__annotations__) - flags}
 

@@ -100,7 +100,7 @@ def test_arrays_become_contiguous_and_of_the_right_types():
     ).checked()
     kinds = [getattr(mesh, name).dtype for name in mesh.__slots__ if name != "boundary"]
     real, small, index = np.float64, np.float32, np.int32
-    assert kinds == [real, index, index, index, small, index, small, small, small]
+    assert kinds == [real, index, index, index, small, index, small, small, small, index]
     assert mesh.positions.flags.c_contiguous
     assert (mesh.crease_edges.tolist(), mesh.crease_sharpness.tolist()) == ([[2, 3]], [2])
     assert (mesh.corner_vertices.tolist(), mesh.corner_sharpness.tolist()) == ([0, 4], [0.5, np.inf])

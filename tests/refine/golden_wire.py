@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from foveal.refine.slots import Slots
-from foveal.refine.wire import Buffers, Head, buffers, message
+from foveal.refine.wire import Buffers, Head, buffers, changes, message
 from refine.wire_page import Page, wish
 
 FOLDER = Path(__file__).parents[2] / "spec" / "golden"
@@ -22,6 +22,8 @@ HEADS = [
     Head(3, 2, True, False, 51, 0.125, 1.0),
     Head(4, 0, True, True, 51, 12.0, 1.0),
     Head(5, 0, True, True, 51, 0.5, 1.0, has_normals=True),
+    Head(6, 0, False, True, 51, 0.5, 1.0, has_normals=True, has_colours=True),
+    Head(7, 6, True, True, 51, 0.5, 1.0, has_normals=True, has_colours=True),
 ]
 
 
@@ -36,7 +38,10 @@ def slots(rng: np.random.Generator, faces: int, vertices: int, free: int) -> Slo
 
 
 def session() -> list[Slots]:
-    """What the page is to have after each message: all, some and more, nothing, all anew, with normals."""
+    """What the page is to have after each message but for colours.
+
+    All, some and more, nothing, all anew, with normals, with colours, with some of other colours.
+    """
     rng = np.random.default_rng(20)
     first = slots(rng, 41, 27, 3)
     second = slots(rng, 53, 70, 2)
@@ -47,15 +52,25 @@ def session() -> list[Slots]:
     second.positions[12], second.starts[12] = ORIGIN + 3, ORIGIN + 2.5
     moved = second._replace(positions=second.positions + 0.5)
     normals = ORIGIN + np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.0, 0.0, 0.0]])[np.arange(70) % 3]
-    return [first, second, second, moved, moved._replace(starts=normals)]
+    return [first, second, second, moved, *[moved._replace(starts=normals)] * 3]
+
+
+def vertex_colours() -> list[np.ndarray]:
+    """The same of the colours: one word a vertex, or none."""
+    none = np.zeros(0, np.uint32)
+    values = np.arange(70, dtype=np.uint32)
+    words = 255 << 24 | values << 16 | (3 * values) << 8 | (255 - values)
+    other = words.copy()
+    other[[3, 40, 41]] = 0xFF0102FE
+    return [*[none] * 5, words, other]
 
 
 def messages() -> list[bytes]:
     """The session's messages."""
     found, sent = [], Buffers.empty()
-    for head, there in zip(HEADS, session(), strict=True):
-        new = buffers(there, ORIGIN)
-        found.append(message(head, new, sent if head.base else Buffers.empty()))
+    for head, there, colours in zip(HEADS, session(), vertex_colours(), strict=True):
+        new = buffers(there, ORIGIN)._replace(colours=colours)
+        found.append(message(head, new, changes(new, sent if head.base else Buffers.empty())))
         sent = new
     return found
 
@@ -67,7 +82,8 @@ def main() -> None:
         (FOLDER / f"wire_{number}.bin").write_bytes(sent)
         page.apply(sent)
         case = {name: getattr(page, name) for name in ("faces", "positions", "starts", "levels", "colours")}
-        cases.append({"file": f"wire_{number}.bin", "head": page.head, **case})
+        coloured = {"vertex_colours": page.vertex_colours} if page.vertex_colours else {}
+        cases.append({"file": f"wire_{number}.bin", "head": page.head, **case, **coloured})
     data = {"request": wish(seen=1, budget=1000, rate=60, positions="limit", drawn_ms=3.5), "messages": cases}
     (FOLDER / "wire.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
 

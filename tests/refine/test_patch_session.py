@@ -11,7 +11,7 @@ from foveal import FovealError
 from foveal.mesh.poly_shapes import cube, quad_torus
 from foveal.mesh.polymesh import PolyMesh
 from foveal.refine.depth_words import depths_json, depths_of
-from foveal.refine.patch_session import PatchSession
+from foveal.refine.patch_session import PatchSession, patch_buffers
 from foveal.refine.slates import Slates
 from foveal.refine.slates_depth import Depths
 from foveal.refine.wire import request_of
@@ -21,6 +21,9 @@ AWAY = np.array([500_000.25, -4_000_000.5, 12.0])
 TORUS = quad_torus(12, 8)
 CREASED = PolyMesh.of(
     cube().positions, cube().corners.reshape(-1, 4), creases={(0, 1): 10, (1, 3): 10, (3, 2): 10, (2, 0): 10}
+)
+COLOURED = replace(
+    TORUS, colours=np.random.default_rng(4).uniform(0, 255, (len(TORUS.positions), 3)).astype(np.float32)
 )
 
 
@@ -61,6 +64,50 @@ def test_a_page_has_what_the_tessellation_has(mesh):
         assert page.head["flags"] == 7  # settled, limit, normals
         assert page.head["base"] == page.sequence - 1 or page.sequence == 1
         assert len(sent) > 0
+
+
+@pytest.mark.parametrize("mesh", [TORUS, CREASED, COLOURED], ids=["torus", "creased cube", "coloured"])
+def test_after_any_walk_a_page_has_the_arrays_of_the_server(mesh, monkeypatch):
+    monkeypatch.setattr("foveal.refine.patch_session._MOST_ROWS", 40_000)
+    rng = np.random.default_rng(11)
+    session, page = PatchSession(mesh), Page()
+    bases = []
+    for _ in range(40):
+        rules = {"most": int(rng.integers(0, 7)), "size_px": [1, float(rng.uniform(2, 30))]}
+        view = {"angle": float(rng.uniform(0, 7)), "away": float(rng.uniform(1, 12))}
+        if rng.random() < 0.1:
+            page.sequence = 0  # it lost what it had
+        ask(session, page, depths=rules, budget=int(rng.choice([0, 3_000])), **view)
+        arrays = session._surface.arrays()
+        for held, there in zip(page.arrays, patch_buffers(arrays, session._colours), strict=True):
+            assert bytes(held) == there.tobytes()
+        if mesh.colours is not None:
+            written = np.unique(arrays.faces[arrays.faces.any(axis=1)])
+            expected = np.rint(arrays.columns[0][written])
+            assert (np.array(page.vertex_colours)[written, :3] == expected).all()
+        expected = np.zeros(len(arrays.faces), np.uint8)
+        for first, count, depth in zip(arrays.first[0], arrays.counts[0], arrays.depths[0], strict=True):
+            expected[first : first + count] = max(depth, 0)
+        assert page.levels == expected.tolist()
+        assert (arrays.faces.any(axis=1).sum()) == page.head["triangles"]
+        bases.append(page.head["base"])
+    assert 2 <= bases.count(0) < 20
+
+
+def test_colours_go_with_their_vertices():
+    session, page = PatchSession(COLOURED), Page()
+    for angle in (0.0, 0.3):
+        ask(session, page, angle=angle)
+        assert page.head["flags"] == 15
+    found = np.array(page.vertex_colours)
+    surface = Slates(COLOURED, dtype=np.float32)
+    surface.show(0)
+    corners = np.rint(surface.arrays().columns[0][surface.arrays().faces[:, 0]])
+    there = {tuple(c) for c in found[:, :3].tolist()}
+    assert {tuple(c) for c in corners.astype(int).tolist()} <= there
+    ask(plain := PatchSession(TORUS), other := Page())
+    assert not plain.has_colours
+    assert other.vertex_colours == []
 
 
 def test_only_what_changed_is_sent():

@@ -1,6 +1,7 @@
 """Slates: no gaps at any depths, whatever was shown before, moved, or asked for."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from foveal.mesh.poly_shapes import cube, prism, quad_grid, quad_torus
 from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.shapes import icosphere
 from foveal.refine.slates import Slates
+from foveal.refine.slates_depth import Depths
+from foveal.view.camera import Camera
 from refine import naive_catmull_clark as twin
 from refine.cages import CAGES, CLOSED, wavy
 
@@ -189,7 +192,13 @@ def test_attributes_go_along():
     assert abs(arrays.columns[1][rows, :2] - 2 * arrays.positions[rows, :2]).max() < 1e-6
     assert (arrays.columns[0][rows] >= -1e-4).all()
     assert (arrays.columns[0][rows] <= 255.0001).all()
-    assert surface.mesh().colours.shape == surface.mesh().positions.shape
+    whole = surface.mesh()
+    assert whole.colours.shape == whole.positions.shape
+    assert abs(whole.uvs - 2 * whole.positions[:, :2]).max() < 1e-5
+    surface = Slates(PolyMesh(mesh.positions, mesh.starts, mesh.corners, uvs=mesh.uvs))
+    surface.show(1)
+    assert surface.mesh().colours is None
+    assert abs(surface.mesh().uvs - 2 * surface.mesh().positions[:, :2]).max() < 1e-5
 
 
 def test_a_mesh_shares_vertices_but_on_creases():
@@ -214,6 +223,30 @@ def test_triangles_are_a_control_mesh_too():
     assert done.triangles == 3 * 80 * 8
     radius = np.linalg.norm(surface.mesh().positions, axis=1)
     assert 0.8 < radius.min() < radius.max() < 1
+
+
+@pytest.mark.parametrize("name", ["prism", "creased_torus", "creased_grid"])
+def test_holes_are_left_out_and_bend_the_rest(name):
+    mesh = CAGES[name]()
+    holes = np.array([0, mesh.faces // 2])
+    holed = replace(mesh, holes=holes.astype(np.int32))
+    whole, left = Slates(mesh), Slates(holed)
+    for surface in (whole, left):
+        surface.show(2)
+    ours, theirs = left.arrays(), whole.arrays()
+    is_hole = np.isin(ours.patch_faces, holes) | (theirs.depths[0] < 0)
+    assert (ours.depths[0] == np.where(is_hole, -1, 2)).all()
+    for patch in np.flatnonzero(~is_hole).tolist():
+        rows = [a.faces[a.first[0, patch] :][: a.counts[0, patch]] for a in (ours, theirs)]
+        assert (ours.positions[rows[0]] == theirs.positions[rows[1]]).all()
+        assert (ours.normals[rows[0]] == theirs.normals[rows[1]]).all()
+    if name == "prism":  # closed but for the holes, through which backs are seen
+        camera = Camera.of([0, 0, 5], [0, 0, 0])
+        rules = Depths(cone=None, silhouettes=False, size_px=None)
+        for surface, has_backs in ((whole, True), (left, False)):
+            surface.update(camera, depths=rules)
+            assert (surface.arrays().depths[0] == 0).any() == has_backs
+    assert len(holed.triangulated().faces) < len(mesh.triangulated().faces)
 
 
 def test_bad_input_is_refused_in_a_sentence():

@@ -1,9 +1,12 @@
 """Triangles paired into quadrangles: each once, on the same surface, few left over."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from corpus import MANIFOLD, MESHES
+from foveal.mesh.poly_shapes import quad_torus
 from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.shapes import icosphere, torus
 from foveal.refine.slates import Slates
@@ -43,6 +46,19 @@ def test_nothing_is_left_over_where_all_can_be_paired():
     assert 0.9 < radius.min() < radius.max() < 1
 
 
-def test_only_triangles_are_paired():
-    with pytest.raises(ValueError, match="TriMesh"):
-        Slates(PolyMesh.of_triangles(icosphere(0)), pair_triangles=True)
+def test_other_faces_and_creases_stay():
+    fan = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5, 6]]
+    points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0.2], [0, -1, 0], [1, -1, 0]]
+    mesh = PolyMesh.of(points, fan, creases={(1, 4): 2, (3, 4): 0}, sharp_corners={4: 3})
+    found = paired(mesh)
+    assert sorted(map(sorted, rows(found))) == [[0, 1, 3, 4], [0, 1, 5, 6], [1, 2, 3, 4]]
+    assert found.checked().crease_edges.tolist() == [[1, 4], [3, 4]]
+    assert found.corner_vertices.tolist() == [4]
+    surface = Slates(mesh, pair_triangles=True)
+    assert surface.patches == 3
+    assert paired(quad_torus(5, 4)).faces == 20  # nothing to pair
+    holed = paired(replace(mesh, holes=np.array([2, 4], np.int32)))
+    assert sorted(map(sorted, rows(holed))) == [[0, 1, 3, 4], [0, 1, 5, 6], [1, 2, 4], [2, 3, 4]]
+    assert holed.holes.tolist() == [2, 3]
+    holed = paired(replace(mesh, holes=np.array([4], np.int32)))
+    assert [len(rows(holed)), holed.holes.tolist()] == [3, [2]]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from foveal import FovealError
 from foveal.refine.slots import Slots
-from foveal.refine.wire import MAX_REQUEST_BYTES, Buffers, Head, buffers, message, request_of
+from foveal.refine.wire import MAX_REQUEST_BYTES, Buffers, Head, buffers, changes, message, request_of
 from refine import golden_wire
 from refine.wire_page import Page, Refused, parse, wish
 
@@ -26,25 +26,29 @@ def test_the_golden_session_is_what_is_written():
 
 def test_the_golden_session_is_what_a_page_makes_of_it():
     page = Page()
-    for case, slots in zip(GOLDEN["messages"], golden_wire.session(), strict=True):
+    whole = zip(GOLDEN["messages"], golden_wire.session(), golden_wire.vertex_colours(), strict=True)
+    for case, slots, colours in whole:
         page.apply((golden_wire.FOLDER / case["file"]).read_bytes())
         assert page.head == case["head"]
         np.testing.assert_array_equal(page.faces, slots.faces)
         np.testing.assert_array_equal(page.positions, np.float32(slots.positions - golden_wire.ORIGIN))
         np.testing.assert_array_equal(page.starts, np.float32(slots.starts - golden_wire.ORIGIN))
         assert (page.levels, page.colours) == (slots.levels.tolist(), slots.colours.tolist())
+        assert bytes(page.arrays[4]) == colours.astype("<u4").tobytes()
+        assert page.vertex_colours == [tuple(c) for c in case.get("vertex_colours", [])]
         for name in ("faces", "positions", "starts"):
             np.testing.assert_array_equal(getattr(page, name), case[name])
 
 
 def test_the_golden_session_has_what_can_be_got_wrong():
     heads = [case["head"] for case in GOLDEN["messages"]]
-    assert [head["base"] for head in heads] == [0, 1, 2, 0, 0]
+    assert [head["base"] for head in heads] == [0, 1, 2, 0, 0, 0, 6]
     assert heads[0]["faces"] < heads[1]["faces"]  # arrays grow
     assert heads[1]["ranges"] > 4  # more than one range in an array
     assert heads[2]["ranges"] == 0
     assert heads[3]["is_limit"]
-    assert [head["flags"] >> 2 for head in heads] == [0, 0, 0, 0, 1]  # normals
+    assert [head["flags"] >> 2 for head in heads] == [0, 0, 0, 0, 1, 3, 3]  # normals, colours
+    assert 0 < heads[6]["ranges"] < 4  # colours change alone
     assert heads[1]["faces"] % 4  # tags have a tail
 
 
@@ -64,8 +68,8 @@ def test_ranges_bring_a_page_from_anything_to_anything(old, new):
     new = new[: 3 * (len(new) // 3)]
     before, after = (_buffers(values) for values in (old, new))
     page = Page()
-    page.apply(message(PLAIN, before, Buffers.empty()))
-    page.apply(message(PLAIN._replace(sequence=2, base=1), after, before))
+    page.apply(message(PLAIN, before, changes(before, Buffers.empty())))
+    page.apply(message(PLAIN._replace(sequence=2, base=1), after, changes(after, before)))
     assert page.faces == [tuple(new[i : i + 3]) for i in range(0, len(new), 3)]
 
 
@@ -80,7 +84,8 @@ def test_what_did_not_change_is_not_sent():
     slots = golden_wire.slots(rng, 10_000, 5_000, 0)
     before = buffers(slots, golden_wire.ORIGIN)
     slots.positions[[17, 4_000]] += 1
-    sent = message(PLAIN._replace(base=1, sequence=2), buffers(slots, golden_wire.ORIGIN), before)
+    after = buffers(slots, golden_wire.ORIGIN)
+    sent = message(PLAIN._replace(base=1, sequence=2), after, changes(after, before))
     _, ranges = parse(sent)
     assert [number for number, _, _ in ranges] == [1, 1]
     assert len(sent) <= 40 + 2 * (12 + 128)
@@ -94,7 +99,7 @@ def test_a_message_holds_copies():
     assert all((a == b).all() for a, b in zip(held, kept, strict=True))
 
 
-@pytest.mark.parametrize("name", ["wire_0.bin", "wire_3.bin"])
+@pytest.mark.parametrize("name", ["wire_0.bin", "wire_3.bin", "wire_5.bin"])
 def test_the_page_refuses_every_prefix(name):
     whole = (golden_wire.FOLDER / name).read_bytes()
     for length in range(len(whole)):

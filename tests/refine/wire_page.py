@@ -3,7 +3,7 @@
 import math
 import struct
 
-SIZES = (12, 12, 12, 1)  # bytes of a face, a vertex, a vertex, a face
+ARRAYS = 5
 
 
 class Refused(Exception):
@@ -11,10 +11,10 @@ class Refused(Exception):
 
 
 class Page:
-    """The four arrays as bytes, and what the last message told."""
+    """The arrays as bytes, and what the last message told."""
 
     def __init__(self):
-        self.arrays = [bytearray() for _ in SIZES]
+        self.arrays = [bytearray() for _ in range(ARRAYS)]
         self.sequence = 0
         self.head = {}
 
@@ -24,15 +24,18 @@ class Page:
         if head["base"] not in (0, self.sequence):
             raise Refused("gap")
         faces, vertices = head["faces"], head["vertices"]
-        lengths = [12 * faces, 12 * vertices, 12 * vertices, -(-faces // 4) * 4]
-        arrays = [bytearray() for _ in SIZES] if head["base"] == 0 else [bytearray(a) for a in self.arrays]
+        colours = 4 * vertices if head["flags"] & 8 else 0
+        lengths = [12 * faces, 12 * vertices, 12 * vertices, -(-faces // 4) * 4, colours]
+        arrays = (
+            [bytearray() for _ in range(ARRAYS)] if head["base"] == 0 else [bytearray(a) for a in self.arrays]
+        )
         for array, length in zip(arrays, lengths, strict=True):
             if len(array) > length:
                 raise Refused("shrunk")
             array.extend(bytes(length - len(array)))
         last = (0, 0)
         for number, offset, content in ranges:
-            if number > 3 or (number, offset) < last or offset + len(content) > lengths[number]:
+            if number >= ARRAYS or (number, offset) < last or offset + len(content) > lengths[number]:
                 raise Refused("range")
             arrays[number][offset : offset + len(content)] = content
             last = (number, offset + len(content))
@@ -59,6 +62,11 @@ class Page:
     def colours(self):
         return [tag >> 5 & 3 for tag in self.arrays[3][: len(self.faces)]]
 
+    @property
+    def vertex_colours(self):
+        """Red, green, blue and 255, or nothing."""
+        return [tuple(self.arrays[4][i : i + 4]) for i in range(0, len(self.arrays[4]), 4)]
+
     def _points(self, number):
         words = struct.unpack(f"<{len(self.arrays[number]) // 4}f", self.arrays[number])
         return [words[i : i + 3] for i in range(0, len(words), 3)]
@@ -69,7 +77,7 @@ def parse(message):
     names = "sequence base flags faces vertices triangles ranges milliseconds threshold"
     magic, *values = struct.unpack_from("<4s7I2f", message)
     head = dict(zip(names.split(), values, strict=True))
-    if magic != b"FVL\x01" or head["flags"] > 7:
+    if magic != b"FVL\x01" or head["flags"] > 15:
         raise Refused("magic")
     begin = 40 + 12 * head["ranges"]
     ranges = []

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from foveal.base.progress import SILENT
 from foveal.container import create
 
 
@@ -56,3 +57,21 @@ def viewer(tmp_path):
     (folder / ".hidden").write_text("a secret")
     (folder / "bundle.json").write_text("{}")
     return folder
+
+
+class Notes:
+    """What a person is told, in `said`."""
+
+    def __init__(self):
+        self.said = []
+
+    def stage(self, what, total):
+        return SILENT.stage(what, total)
+
+    def note(self, sentence):
+        self.said.append(sentence)
+
+
+@pytest.fixture
+def notes():
+    return Notes()

@@ -1,4 +1,4 @@
-"""Writes `cage.fov`, `cage.json`, the same of `cage_sharp` and `cage_polygons`, in `spec/golden`.
+"""Writes `cage.fov`, `cage.json`, the same of `cage_sharp`, `_polygons` and `_placed`, in `spec/golden`.
 
 Both pytest and vitest read them.
 
@@ -9,11 +9,14 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
+
 from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 from foveal.refine import Criteria, Region, sharp_edges
 from foveal.refine.depth_words import depths_json
 from foveal.refine.slates_depth import Depths
+from foveal.refine.slates_placements import placed
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import Refinement
 
@@ -61,6 +64,11 @@ POLYGONS = PolyMesh.of(  # a cube whose top is a triangle and a pentagon, crease
     colours=[[16 * i, 255 - i, 0.5] for i in range(10)],
     uvs=[[i / 8, -i] for i in range(10)],
 )
+PLACEMENTS = [
+    [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+    [[0, -1.5, 0, 8], [1.5, 0, 0, 0], [0, 0.25, 1.5, 0.1], [0, 0, 0, 1]],
+    [[-1, 0, 0, 0.3], [0, 1, 0, 7], [0, 0, 2, 0], [0, 0, 0, 1]],
+]
 PATCHES = Refinement(
     "catmull-clark",
     Criteria(),
@@ -74,7 +82,7 @@ PATCHES = Refinement(
 def write_polygons() -> None:
     """A file of polygons."""
     write_cage(POLYGONS, FOLDER / "cage_polygons.fov", refinement=PATCHES, up="z")
-    fields = [field for field in POLYGONS.__dataclass_fields__ if field != "boundary"]
+    fields = [field for field in POLYGONS.__dataclass_fields__ if field not in ("boundary", "holes")]
     data = {
         **{field: getattr(POLYGONS, field).tolist() for field in fields},
         "crease_sharpness": [min(s, 2.0**100) for s in POLYGONS.crease_sharpness.tolist()],  # JSON has no inf
@@ -85,6 +93,19 @@ def write_polygons() -> None:
         "rate": PATCHES.rate,
     }
     (FOLDER / "cage_polygons.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
+
+
+def write_placed(path: Path) -> None:
+    """A file in three places, one of them mirrored."""
+    write_cage(POLYGONS, path, refinement=PATCHES, up="z", placements=PLACEMENTS)
+
+
+def write_placed_json() -> None:
+    """What such a file holds: the matrices, and where the vertices of all copies are."""
+    placements = np.array(PLACEMENTS, np.float64)
+    positions = placed(POLYGONS, placements).positions
+    data = {"placements": placements.tolist(), "positions": positions.tolist()}
+    (FOLDER / "cage_placed.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
 
 
 def write_sharp() -> None:
@@ -99,6 +120,8 @@ def main() -> None:
     """Write all."""
     write_sharp()
     write_polygons()
+    write_placed(FOLDER / "cage_placed.fov")
+    write_placed_json()
     write_cage(MESH, FOLDER / "cage.fov", refinement=REFINEMENT, up="z")
     regions = {
         name: {"iterations": region.iterations, "edge_px": region.edge_px, "bend": region.bend}

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from foveal.container import open_container
 from foveal.mesh.poly_shapes import cube, quad_torus
 from foveal.mesh.shapes import icosphere
 from foveal.refine import Criteria
+from foveal.refine import _kernels_slates_layout as layout
 from foveal.refine.depth_words import depths_json
 from foveal.refine.slates_depth import Depths
+from foveal.scene import depth_rules
 from foveal.scene.cage_file import read_cage, write_cage
-from foveal.scene.cage_polygons import PolygonCounts
+from foveal.scene.cage_polygons import PolygonCounts, told
 from foveal.scene.refinement import Refinement, chosen, refinement_json, refinement_of
 from scene import golden_cage
 from scene.damage import assert_flips_refused
@@ -41,7 +44,10 @@ def small(tmp_path_factory):
     return path.read_bytes()
 
 
-@pytest.mark.parametrize("mesh", [cube(), quad_torus(7, 5), golden_cage.POLYGONS])
+HOLED = replace(golden_cage.POLYGONS, holes=np.array([1, 3], np.int32))
+
+
+@pytest.mark.parametrize("mesh", [cube(), quad_torus(7, 5), golden_cage.POLYGONS, HOLED])
 def test_what_goes_in_comes_out(tmp_path, mesh):
     report = write_cage(mesh, tmp_path / "a.fov", refinement=golden_cage.PATCHES, up="x")
     found = read_cage(tmp_path / "a.fov")
@@ -50,7 +56,8 @@ def test_what_goes_in_comes_out(tmp_path, mesh):
     assert found.up == "x"
     assert refinement_json(found.refinement) == refinement_json(golden_cage.PATCHES)
     assert report.polygons == PolygonCounts.of(mesh)
-    assert (report.vertices, report.triangles) == (len(mesh.positions), len(found.mesh.faces))
+    assert (report.vertices, report.triangles) == (len(mesh.positions), len(mesh.corners) - 2 * mesh.faces)
+    assert len(found.mesh.faces) == len(mesh.triangulated().faces)
 
 
 def test_triangles_are_kept_as_polygons(tmp_path):
@@ -66,7 +73,7 @@ def test_the_golden_file_is_read_and_written(tmp_path):
     found = read_cage(path)
     for field in FIELDS:
         got = np.minimum(getattr(found.polygons, field), 2.0**100)
-        assert got.tolist() == expected[field], field
+        assert got.tolist() == expected.get(field, []), field
     assert (found.polygons.boundary, found.up) == (expected["boundary"], expected["up"])
     assert depths_json(found.refinement.depths) == expected["depths"]
     assert (found.refinement.budget, found.refinement.rate) == (expected["budget"], expected["rate"])
@@ -75,6 +82,20 @@ def test_the_golden_file_is_read_and_written(tmp_path):
         assert old.chunk(0) == new.chunk(0)
         apart = {"generator": 0, "first_bytes": 0}
         assert {**old.header, **apart} == {**new.header, **apart}
+
+
+def test_holes_are_counted_and_damaged_ones_refused(tmp_path):
+    report = write_cage(HOLED, tmp_path / "a.fov", refinement=PATCHES)
+    assert told(report.polygons).split(", ")[:4] == ["5 quads", "1 triangle", "1 larger polygon", "2 holes"]
+    data = (tmp_path / "a.fov").read_bytes()
+    with open_container(data) as file:
+        chunk = file.chunk(0)
+    assert chunk[-8:] == bytes([1, 0, 0, 0, 3, 0, 0, 0])
+    for holes, sentence in (({"holes": 0}, "holes"), ({"holes": 1}, "lengths"), ({"holes": ...}, "lengths")):
+        with pytest.raises(FovealError, match=sentence):
+            read(rewritten(data, holes))
+    with pytest.raises(FovealError, match="face 9 is to be a hole, but faces go from 0 to 6"):
+        read(rewritten(data, first=chunk[:-4] + bytes([9, 0, 0, 0])))
 
 
 def test_every_prefix_is_refused(small):
@@ -158,6 +179,7 @@ def test_polygons_are_of_one_scheme(tmp_path):
 
 
 def test_options_of_patches():
+    assert depth_rules.MOST_DEPTH == layout.MOST_DEPTH
     mapped = chosen({"scheme": "catmull-clark", "criteria": {"front": {"iterations": 3, "bend": 0.25}}})
     assert mapped.depths == Depths(most=3, cone=0.25)
     assert mapped.positions == "limit"
@@ -174,7 +196,10 @@ def test_options_of_patches():
         ({"scheme": "catmull-clark", "criteria": {"front": {"edge_px": 3}}}, "no length of edges"),
         ({"scheme": "catmull-clark", "criteria": {"back": {"iterations": 3}}}, "no numbers apart"),
         ({"scheme": "catmull-clark", "criteria": Criteria()}, "Choose depths instead"),
-        ({"scheme": "catmull-clark", "criteria": {"front": {"iterations": 9}}}, "most must be"),
+        (
+            {"scheme": "catmull-clark", "criteria": {"front": {"iterations": 9}}},
+            "knows 0 to 8 iterations, got 9",
+        ),
         ({"scheme": "catmull-clark", "positions": "control"}, "limit surface only"),
         ({"scheme": "catmull-clark", "sharp_edges": 0.5}, "keeps the creases of the file"),
         ({"scheme": "sqrt3", "depths": {"most": 3}}, "sqrt3 has no rules of depth"),

@@ -11,7 +11,8 @@ from foveal.mesh.io import read_mesh, write_ply
 from foveal.mesh.shapes import bumpy_sphere, icosphere, terrain
 from foveal.refine import Criteria, Region, Sqrt3Filter, sqrt3
 from foveal.scene import refine_size, refined
-from foveal.scene.cage_file import ControlMesh, write_cage
+from foveal.scene.cage_file import write_cage
+from foveal.scene.control_mesh import ControlMesh
 from foveal.scene.refine import refine
 from foveal.scene.refinement import Refinement
 from foveal.scene.render import home

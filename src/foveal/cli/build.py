@@ -61,6 +61,7 @@ def build(
             counts += f", {counted(report.sharp_edges, 'sharp edge')}"
         if report.polygons is not None:
             counts = f"{told(report.polygons)}, {counted(report.vertices, 'vertex', 'vertices')}"
+            counts += f", in {report.placements:,} places" if report.placements > 1 else ""
         telling.result(facts, f"{output}: a control mesh of {counts}, {report.bytes:,} bytes")
         return
     facts["seconds"] = {"total": seconds, **report.seconds}

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -24,10 +25,14 @@ from .options import (
     Json,
     Memory,
     Normals,
+    PairTriangles,
+    PlacementsFile,
     Positions,
+    Prim,
     Quiet,
     RadiusPx,
     Scheme,
+    SchemeKind,
     SharpEdges,
     SilhouetteBend,
     SilhouetteEdgePx,
@@ -42,6 +47,9 @@ from .report import Reporter, reporter
 from .result import print_json, print_lines
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from foveal.base.tasks import Executor
     from foveal.scene.build import BuildOptions
     from foveal.scene.refinement import RefineOptions
@@ -158,8 +166,12 @@ def refining(
     sharp_edges: SharpEdges = None,
     radius_px: RadiusPx = None,
     without: Without = None,
+    pair_triangles: PairTriangles = False,
+    prim: Prim = None,
+    placements: PlacementsFile = None,
 ) -> "RefineOptions":
     """How a control mesh is refined; what is not chosen is as the file says, or as in `Criteria`."""
+    _refuse_iterations(scheme, iterations)
     silhouette = (silhouette_iterations, silhouette_edge_px, _radians(silhouette_bend))
     front = (iterations, edge_px, _radians(bend))
     regions = {"front": front, "silhouette": silhouette, "back": (back_iterations,)}
@@ -175,7 +187,25 @@ def refining(
         "positions": positions and positions.value,
         "budget": budget,
         "sharp_edges": _radians(sharp_edges),
+        "pair_triangles": pair_triangles or None,
+        "prim": prim,
+        "placements": None if placements is None else _read_placements(placements),
     }
+
+
+def _refuse_iterations(scheme: SchemeKind | None, iterations: int | None) -> None:
+    from foveal.scene.depth_rules import CATMULL_CLARK, MOST_DEPTH
+
+    if scheme is not None and scheme.value == CATMULL_CLARK and (iterations or 0) > MOST_DEPTH:
+        raise typer.BadParameter(
+            f"{CATMULL_CLARK} knows {MOST_DEPTH} at most, got {iterations}.", param_hint="--iterations"
+        )
+
+
+def _read_placements(path: Path) -> "NDArray[np.float64]":
+    from foveal.scene.cage_options import read_placements
+
+    return read_placements(path)
 
 
 def _depths(radius_px: tuple[float, float] | None, without: list[str]) -> dict[str, Any] | None:

@@ -96,7 +96,8 @@ def _polygons(facts: dict[str, Any]) -> list[str]:
     if "polygons" not in facts:
         return []
     counts = PolygonCounts(**facts["polygons"])
-    return [f"  made of      {told(counts)}", f"  boundary     {counts.boundary.replace('_', ' ')}"]
+    lines = [f"  made of      {told(counts)}", f"  boundary     {counts.boundary.replace('_', ' ')}"]
+    return [*lines, f"  placements   {facts['placements']:,}"] if "placements" in facts else lines
 
 
 def _depths(facts: dict[str, Any]) -> list[str]:

@@ -22,8 +22,11 @@ __all__ = [
     "ModeKind",
     "Normals",
     "NormalsKind",
+    "PairTriangles",
+    "PlacementsFile",
     "Positions",
     "PositionsKind",
+    "Prim",
     "Quiet",
     "RadiusPx",
     "RuleKind",
@@ -230,6 +233,29 @@ Without = Annotated[
     typer.Option(
         case_sensitive=False,
         help="Leave out this rule for the depth of patches; may be repeated. For catmull-clark.",
+    ),
+]
+PairTriangles = Annotated[
+    bool,
+    typer.Option(
+        "--pair-triangles",
+        help="Join triangles in pairs to quads first: half the patches. For catmull-clark.",
+    ),
+]
+PlacementsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--placements",
+        metavar="FILE.json",
+        help="Where the cage stands: an array of 4 x 4 matrices, row by row. For catmull-clark.",
+        readable=False,
+    ),
+]
+Prim = Annotated[
+    str | None,
+    typer.Option(
+        metavar="PATH",
+        help="Which mesh of a USD file, such as /town/house; by default the first. For catmull-clark.",
     ),
 ]
 SharpEdges = Annotated[

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .groups import Telling, building, takes, telling
+from .groups import Telling, building, refining, takes, telling
 from .options import Force, Source
 from .output import refuse_output
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
+    from foveal.scene.refinement import RefineOptions
 
 __all__ = ["render"]
 
 
-@takes(building, telling)
+@takes(building, refining, telling)
 def render(
     file: Source,
     output: Annotated[
@@ -52,6 +53,7 @@ def render(
     force: Force = False,
     *,
     building: AbstractContextManager["BuildOptions"],
+    refining: "RefineOptions",
     telling: Telling,
 ) -> None:
     """Draw a PNG, the same pixels on every machine.
@@ -63,6 +65,7 @@ def render(
     wanted = None if size is None else parse_picture_size(size)
     refuse_output(output, file, ".png", force=force)
     with telling.progress() as progress, building as options:
+        chosen: BuildOptions = {**options, **refining}
         picture = foveal.render(
             file,
             output,
@@ -71,7 +74,7 @@ def render(
             error_px=error_px,
             triangles=triangles,
             progress=progress,
-            **options,
+            **chosen,
         )
     eye = picture.camera
     telling.result(

@@ -34,7 +34,18 @@ def checked(mesh: "PolyMesh", name: str) -> "PolyMesh":
     if colours is not None and ((colours < 0) | (colours > 255)).any():
         raise FovealError(f"{name}: colours must be from 0 to 255. From 0 to 1, multiply by 255.")
     uvs = _attribute("uvs", mesh.uvs, (len(positions), 2), name)
-    return type(mesh)(positions, starts, corners, *creases, *tags, mesh.boundary, colours, uvs)
+    holes = _holes(mesh.holes, len(starts) - 1, name)
+    return type(mesh)(positions, starts, corners, *creases, *tags, mesh.boundary, colours, uvs, holes)
+
+
+def _holes(values: ArrayLike, faces: int, name: str) -> NDArray[np.int32]:
+    holes = np.unique(whole_numbers("holes", values, name, (-1,)))
+    if len(holes) and not 0 <= holes[0] <= holes[-1] < faces:
+        wrong = holes[0] if holes[0] < 0 else holes[-1]
+        raise FovealError(f"{name}: face {wrong} is to be a hole, but faces go from 0 to {faces - 1}.")
+    if len(holes) == faces:
+        raise FovealError(f"{name}: all its faces are holes, so there is no surface.")
+    return holes.astype(np.int32)
 
 
 def numbers(what: str, values: ArrayLike, name: str, shape: tuple[int, ...]) -> NDArray[Any]:

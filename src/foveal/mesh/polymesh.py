@@ -55,6 +55,9 @@ class PolyMesh:
         sRGB, 0 to 255; no bytes, since they are subdivided like positions.
     uvs : (n, 2) float32 or None
         Texture coordinates.
+    holes : (h,) int32
+        Faces that are left out of the surface, each once, in ascending order; the others bend as if they
+        were there.
 
     References
     ----------
@@ -78,6 +81,7 @@ class PolyMesh:
     boundary: Boundary = "edge_only"
     colours: NDArray[np.float32] | None = None
     uvs: NDArray[np.float32] | None = None
+    holes: NDArray[np.int32] = field(default_factory=lambda: _no_indices(0))
 
     @classmethod
     def of(
@@ -91,6 +95,7 @@ class PolyMesh:
         boundary: Boundary = "edge_only",
         colours: ArrayLike | None = None,
         uvs: ArrayLike | None = None,
+        holes: ArrayLike = (),
         name: str = "mesh",
     ) -> "PolyMesh":
         """A checked mesh of lists of vertices, one a face, and sharpness by edge and by vertex.
@@ -121,7 +126,7 @@ class PolyMesh:
             list(edges.values()),
             list(sharp),
             list(sharp.values()),
-            *(boundary, colours, uvs),
+            *(boundary, colours, uvs, holes),
         ]
         return cls(*parts).checked(name)
 
@@ -173,7 +178,7 @@ class PolyMesh:
         return checked(self, name)
 
     def triangulated(self) -> TriMesh:
-        """The faces as fans around their first corners: right for convex ones; vertices stay as they are.
+        """The faces but holes as fans around their first corners: right for convex ones; vertices stay.
 
         Examples
         --------
@@ -189,6 +194,10 @@ class PolyMesh:
         is_second[starts[1:] - 1] = False
         second = np.flatnonzero(is_second)
         first = np.repeat(starts[:-1], sizes - 2)
+        is_shown = np.ones(self.faces, np.bool_)
+        is_shown[self.holes] = False
+        kept = np.repeat(is_shown, sizes - 2)
+        first, second = first[kept], second[kept]
         colours = None if self.colours is None else np.rint(self.colours).clip(0, 255).astype(np.uint8)
         triangles = np.stack([self.corners[first], self.corners[second], self.corners[second + 1]], axis=1)
         return TriMesh(self.positions, triangles, None, colours)

@@ -28,6 +28,9 @@ class TriMesh:
         Unit length, or zero where a vertex has none.
     colours : (n, 3) uint8 or None
         sRGB, 0 to 255.
+    uvs : (n, 2) float32 or None
+        Texture coordinates, from the lower left: patches of polygons have them, and PLY and GLB are written
+        with them. What reads, simplifies or draws meshes leaves them out.
 
     Examples
     --------
@@ -40,6 +43,7 @@ class TriMesh:
     faces: NDArray[np.int32]
     normals: NDArray[np.float32] | None = None
     colours: NDArray[np.uint8] | None = None
+    uvs: NDArray[np.float32] | None = None
 
     @classmethod
     def of(

@@ -65,9 +65,9 @@ def release(sizes, places, heads, nodes):
 
 
 @lean
-def clear(sizes, used, places, rows):
-    """Zeros from `used` rows of each run to its end."""
+def clear(sizes, places, rows):
+    """Zeros in the rows of runs."""
     for i in range(len(sizes)):
-        for o in range(places[i] + used[i], places[i] + room(class_of(sizes[i]))):
+        for o in range(places[i], places[i] + sizes[i]):
             for x in range(rows.shape[1]):
                 rows[o, x] = 0

@@ -148,6 +148,14 @@ def show(blocks, chosen, depths, sides, places, patches, out):
 
 
 @lean
+def show_levels(chosen, depths, places, counts, out):
+    """The depth of entries `chosen` in each of their rows."""
+    for entry in chosen:
+        for o in range(places[entry], places[entry] + counts[entry]):
+            out[o, 0] = depths[entry]
+
+
+@lean
 def show_even(base, deepest, d, out, o):
     """Two triangles for each quadrangle of a patch of depth d, in a block of a depth."""
     stride = 1 << (deepest - d)

@@ -6,7 +6,7 @@ is on its way at most, and the newest request is the one that counts.
 
 import threading
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from foveal.base.errors import FovealError
 from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 
-from .wire import Buffers, Head, Request, message
+from .wire import Buffers, Head, Ranges, Request, changes, message
 
 __all__ = ["MOST_TRIANGLES", "Dialogue", "origin_of"]
 
@@ -43,6 +43,7 @@ class Dialogue(ABC):
     """One page's part and ours. A scheme brings its mesh to what is wanted, and says what there is then."""
 
     has_normals = False
+    has_colours = False
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
@@ -50,7 +51,6 @@ class Dialogue(ABC):
         self._newest: Request | None = None
         self._last: Request | None = None  # what the refinement stands at
         self._triangles = 0
-        self._sent = Buffers.empty()
         self._sequence = self._base = 0
         self._is_seen = True  # whether the last message was acknowledged
 
@@ -70,7 +70,11 @@ class Dialogue(ABC):
 
     @abstractmethod
     def _buffers(self, request: Request) -> Buffers:
-        """What the page is to have, of copies."""
+        """What the page is to have, good until the next update."""
+
+    @abstractmethod
+    def _changed(self, slots: Buffers) -> Sequence[Ranges] | None:
+        """Where it may differ from what the last message brought; None if that does not lead there."""
 
     @abstractmethod
     def _spent(self, request: Request, milliseconds: float) -> None:
@@ -114,9 +118,9 @@ class Dialogue(ABC):
         return sent
 
     def _message(self, request: Request, milliseconds: float) -> bytes:
-        new, old = self._buffers(request), self._sent
-        has_shrunk = len(new.faces) < len(old.faces) or len(new.positions) < len(old.positions)
-        is_anew = request.seen == 0 or has_shrunk
+        new = self._buffers(request)
+        changed = self._changed(new)
+        is_anew = request.seen == 0 or changed is None
         self._base = 0 if is_anew else self._sequence
         head = Head(
             sequence=self._sequence + 1,
@@ -127,9 +131,10 @@ class Dialogue(ABC):
             milliseconds=milliseconds,
             threshold=self._threshold,
             has_normals=self.has_normals,
+            has_colours=self.has_colours,
         )
-        sent = message(head, new, Buffers.empty() if is_anew else old)
-        self._sent = new
+        whole = changes(new, Buffers.empty()) if changed is None or is_anew else changed
+        sent = message(head, new, whole)
         with self._lock:
             self._sequence, self._is_seen = head.sequence, False
         return sent

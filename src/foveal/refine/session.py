@@ -14,7 +14,7 @@ from .criteria import Criteria, Region
 from .dialogue import MOST_TRIANGLES, Dialogue, origin_of
 from .pace import Pace, coarser, factor
 from .scheme import Scheme, refiner
-from .wire import Buffers, Request, buffers
+from .wire import Buffers, Ranges, Request, buffers, changes
 
 __all__ = ["MOST_TRIANGLES", "Session", "origin_of", "warm"]
 
@@ -68,6 +68,7 @@ class Session(Dialogue):
         self._is_whole = True  # whether the last update had nothing left to split
         self._faces = len(mesh.faces)
         self._work = 0  # triangles of all updates for one message
+        self._sent = Buffers.empty()
 
     def _refine(self, request: Request, begin: float, *, is_new: bool) -> None:
         """Bring the mesh to what is wanted, as near as the budget and a slice of time let it come."""
@@ -116,6 +117,11 @@ class Session(Dialogue):
 
     def _buffers(self, request: Request) -> Buffers:
         return buffers(self._refined.slots(positions=request.positions), self.origin)
+
+    def _changed(self, slots: Buffers) -> list[Ranges] | None:
+        before, self._sent = self._sent, slots
+        is_shorter = any(len(now) < len(was) for now, was in zip(slots, before, strict=True))
+        return None if is_shorter else changes(slots, before)
 
     def _spent(self, request: Request, milliseconds: float) -> None:
         spent = milliseconds / max(1, self._work)

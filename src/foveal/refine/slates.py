@@ -42,7 +42,7 @@ class Slates:
         Where the surface stands: matrices from its own space to that of the camera, invertible, the last row
         0 0 0 1. Each placement has its own depths and triangles; all share points and normals.
     pair_triangles : bool
-        Of a TriMesh: join triangles in pairs first, as `paired` does. Half the patches, on another surface.
+        Join triangles in pairs first, as `paired` does. Half the patches, on another surface.
     dtype : float64 or float32
         Of positions and normals that come out; all is computed in float64.
     name : str
@@ -75,14 +75,9 @@ class Slates:
         dtype: DTypeLike = np.float64,
         name: str = "mesh",
     ) -> None:
-        if isinstance(mesh, TriMesh):
-            triangles = PolyMesh.of_triangles(mesh).checked(name)
-            polygons = paired(mesh) if pair_triangles else triangles
-        elif pair_triangles:
-            raise ValueError("pair_triangles is for a TriMesh")
-        else:
-            polygons = mesh
-        self._mesh, self._name = polygons.checked(name), name
+        polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
+        checked = polygons.checked(name)
+        self._mesh, self._name = paired(checked) if pair_triangles else checked, name
         if np.dtype(dtype) not in (np.dtype(np.float64), np.dtype(np.float32)):
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
         self._cage = SlateCage.of(self._mesh)
@@ -125,8 +120,8 @@ class Slates:
         """
         self._move(positions, placements)
         look = self._views.look(camera, depths or Depths(), self._placements)
-        chosen = look.depths() if budget is None else look.within(budget)
-        return self._show(chosen)
+        chosen, is_capped = (look.depths(), False) if budget is None else look.within(budget)
+        return self._show(chosen, is_capped=is_capped)
 
     def show(self, depths: ArrayLike, /, *, positions: ArrayLike | None = None) -> Tessellated:
         """Tessellate at given depths.
@@ -170,11 +165,12 @@ class Slates:
                 )
             self._views.move(*self._blocks.move(points))
 
-    def _show(self, depths: NDArray[np.int8]) -> Tessellated:
+    def _show(self, depths: NDArray[np.int8], *, is_capped: bool = False) -> Tessellated:
         sides = self._shown.along_sides(depths)
         is_elsewhere, patches = self._blocks.ensure(*self._shown.wanted(depths, sides))
         renewed = self._shown.show(depths, sides, self._blocks.places, is_elsewhere)
-        return Tessellated(self._shown.triangles, len(patches), len(renewed), int(depths.max(initial=-1)))
+        deepest = int(depths.max(initial=-1))
+        return Tessellated(self._shown.triangles, len(patches), len(renewed), deepest, is_capped)
 
     def changed(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Which rows of `arrays` the last update wrote: of positions, normals and columns, and of faces.
@@ -214,6 +210,7 @@ class Slates:
             shown.depths.reshape(shape),
             self._cage.faces,
             columns,
+            shown.levels,
         )
 
     def mesh(self) -> TriMesh:

@@ -37,7 +37,8 @@ class Arena:
         room = len(self.columns[0])
         if self.rows > room:
             # By a half more: twice the room would be twice the memory of a mesh that never grows again.
-            more = max(self.rows, room * 3 // 2)
+            # A multiple of 4 rows, so that columns of bytes can be read as words.
+            more = -(-max(self.rows, room * 3 // 2) // 4) * 4
             self.columns = [_longer(column, more) for column in self.columns]
         return places
 
@@ -58,10 +59,9 @@ class Arena:
         self._nodes[before:, 1] = np.append(fresh[1:], self._heads[-1])
         self._heads[-1] = before
 
-    def clear(self, column: int, places: Ints, sizes: Ints, used: Ints | None = None, /) -> None:
-        """Make rows of runs zero, from `used` of each on, to the end of what was lent."""
-        used = np.zeros_like(sizes) if used is None else used
-        kernels.clear(sizes, used, places, self.columns[column])
+    def clear(self, column: int, places: Ints, sizes: Ints, /) -> None:
+        """Make rows of runs zero."""
+        kernels.clear(sizes, places, self.columns[column])
 
     @property
     def bytes_used(self) -> int:

@@ -96,7 +96,7 @@ class SlateCage:
     faces : (m,) int64
         Which face of the mesh a quadrangle is of.
     is_shown : (m,) bool
-        False for holes, as the boundary rule "none" leaves.
+        False for holes: the mesh's own, and those that the boundary rule "none" leaves.
     """
 
     net: SlateNet
@@ -129,9 +129,11 @@ def _steps(sharpness: Floats) -> int:
 
 
 def _holes(mesh: PolyMesh, polygons: Polygons) -> NDArray[np.bool_]:
-    """With the boundary "none": faces at the ends of a border edge without an infinitely sharp tag."""
+    """The mesh's own; with the boundary "none" also faces at the ends of border edges not sharp for ever."""
+    is_hole = np.zeros(polygons.faces, np.bool_)
+    is_hole[mesh.holes] = True
     if mesh.boundary != "none":
-        return np.zeros(polygons.faces, np.bool_)
+        return is_hole
     is_open = np.zeros(len(polygons.ends), np.bool_)
     is_open[polygons.edge[polygons.mates < 0]] = True
     keys = polygons.ends[:, 0] * polygons.count + polygons.ends[:, 1]
@@ -140,7 +142,7 @@ def _holes(mesh: PolyMesh, polygons: Polygons) -> NDArray[np.bool_]:
     is_near = np.zeros(polygons.count, np.bool_)
     is_near[polygons.ends[is_open]] = True
     found: NDArray[np.bool_] = np.logical_or.reduceat(is_near[polygons.corners], polygons.starts[:-1])
-    return found
+    return found | is_hole
 
 
 def _net(polygons: Polygons, steps: int) -> SlateNet:

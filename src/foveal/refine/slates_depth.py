@@ -83,7 +83,7 @@ class Views:
 
     def __init__(self, cage: SlateCage, blocks: Blocks, /) -> None:
         self._cage, self._blocks = cage, blocks
-        self._is_open = bool((cage.net.mates < 0).any())
+        self._is_open = bool((cage.net.mates < 0).any()) or not cage.is_shown.all()
         self._cosines: Floats | None = None
         self._curvature: tuple[tuple[float | None, int], Levels] | None = None
         self._balls: Floats | None = None
@@ -163,8 +163,8 @@ class Look:
         """(k m,): by the rules."""
         return self.views.depths(self, self.rules.most)
 
-    def within(self, budget: int, /) -> Levels:
-        """(k m,): as deep as the rules and a budget of triangles allow.
+    def within(self, budget: int, /) -> tuple[Levels, bool]:
+        """(k m,): as deep as the rules and a budget of triangles allow; and whether some are coarser for it.
 
         First the maximum depth is lowered until the budget holds, then patches rise to the next, those
         that look largest first, as many as may: a function of the view alone. More triangles than the
@@ -172,7 +172,7 @@ class Look:
         """
         net, upper = self.views.net, self.depths()
         if int(show.count_triangles(net, upper)) <= budget:
-            return upper
+            return upper, False
         for most in range(self.rules.most - 1, -1, -1):
             lower = self.views.depths(self, most)
             total = int(show.count_triangles(net, lower))
@@ -181,6 +181,6 @@ class Look:
                 looks = np.ldexp(self.sizes.reshape(-1)[rising], -lower[rising].astype(np.int32))
                 rising = rising[np.argsort(-looks, kind="stable")]
                 show.rise(net, lower, rising, upper, budget, total)
-                return lower
+                return lower, True
             upper = lower
-        return upper
+        return upper, self.rules.most > 0

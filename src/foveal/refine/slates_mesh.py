@@ -15,7 +15,8 @@ __all__ = ["joined"]
 def joined(arrays: SlateArrays, placements: NDArray[np.float64], /, *, has_colours: bool) -> TriMesh:
     """The triangles of all placements over shared vertices; see `Slates.mesh`."""
     own, copies = _shared([arrays.positions, arrays.normals, *arrays.columns], arrays.faces)
-    points, normals, faces, colours = [], [], [], []
+    points, normals, faces, colours, uvs = [], [], [], [], []
+    has_uvs = len(arrays.columns) > has_colours
     base = 0
     for matrix, first, count in zip(placements, arrays.first, arrays.counts, strict=True):
         triangles = own[arrays.faces[_runs(first, count)]]
@@ -24,15 +25,18 @@ def joined(arrays: SlateArrays, placements: NDArray[np.float64], /, *, has_colou
         points.append(arrays.positions[rows].astype(np.float64) @ linear.T + matrix[:3, 3])
         turned = arrays.normals[rows].astype(np.float64) @ np.linalg.inv(linear)
         normals.append(_unit(turned))
-        faces.append(index.reshape(-1, 3)[:, :: -1 if np.linalg.det(linear) < 0 else 1] + base)
+        faces.append(index.reshape(-1, 3)[:, :: -1 if np.linalg.slogdet(linear).sign < 0 else 1] + base)
         if has_colours:
             colours.append(np.rint(arrays.columns[0][rows]).clip(0, 255).astype(np.uint8))
+        if has_uvs:
+            uvs.append(arrays.columns[-1][rows, :2].astype(np.float32))
         base += len(used)
     return TriMesh(
         np.concatenate(points),
         np.concatenate(faces).astype(np.int32),
         np.concatenate(normals).astype(np.float32),
         np.concatenate(colours) if has_colours else None,
+        np.concatenate(uvs) if has_uvs else None,
     )
 
 

@@ -5,6 +5,8 @@ quadrangles, another one than that of the triangles.
 """
 
 from collections import deque
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +19,15 @@ __all__ = ["paired"]
 Ints = NDArray[np.int64]
 
 
-def paired(mesh: TriMesh, /) -> PolyMesh:
+def paired(mesh: TriMesh | PolyMesh, /) -> PolyMesh:
     """Triangles joined across edges, those first that make the squarest and flattest quadrangles.
 
     Then pairs are changed along paths as long as that joins two triangles that are left over, so that on most
-    closed meshes none is.
+    closed meshes none is. Other faces and holes stay as they are, and so do triangles that meet at a crease.
 
     Parameters
     ----------
-    mesh : TriMesh
+    mesh : TriMesh or PolyMesh
         An oriented surface.
 
     Examples
@@ -34,31 +36,55 @@ def paired(mesh: TriMesh, /) -> PolyMesh:
     >>> paired(torus(6, 5)).faces, paired(icosphere(1)).faces
     (30, 40)
     """
-    faces = mesh.faces.astype(np.int64)
-    first, second = _beside(faces, len(mesh.positions))
-    order = np.argsort(_badness(mesh.positions, faces, first, second), kind="stable")
-    mates = [-1] * len(faces)
-    beside: list[dict[int, int]] = [
-        {} for _ in faces
-    ]  # of a triangle, which are, and beyond which corner's edge
-    for h, g in zip(first[order].tolist(), second[order].tolist(), strict=True):
+    polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
+    starts, corners = polygons.starts.astype(np.int64), polygons.corners.astype(np.int64)
+    is_hole = np.zeros(polygons.faces, np.bool_)
+    is_hole[polygons.holes] = True
+    triangles = np.flatnonzero((np.diff(starts) == 3) & ~is_hole)
+    faces = corners[starts[triangles, None] + np.arange(3)]
+    first, second = _smooth(polygons, faces, *_beside(faces, len(polygons.positions)))
+    order = np.argsort(_badness(polygons.positions, faces, first, second), kind="stable")
+    beside, mates = _mates(first[order].tolist(), second[order].tolist(), len(faces))
+    rows: list[Any] = np.split(corners, starts[1:-1])
+    gone = []
+    for f, g in enumerate(mates):
+        if f < g:  # in the place of the first
+            h, apex = beside[f][g] % 3, faces[g, (beside[g][f] + 2) % 3]
+            rows[triangles[f]] = np.array([faces[f, h], apex, faces[f, (h + 1) % 3], faces[f, (h + 2) % 3]])
+            gone.append(triangles[g])
+    kept = np.delete(np.arange(len(rows)), gone)
+    left = [rows[f] for f in kept]
+    return replace(
+        polygons,
+        starts=np.cumsum([0, *map(len, left)]).astype(np.int32),
+        corners=np.concatenate(left).astype(np.int32),
+        holes=np.flatnonzero(is_hole[kept]).astype(np.int32),
+    )
+
+
+def _mates(first: list[int], second: list[int], count: int) -> tuple[list[dict[int, int]], list[int]]:
+    """Of each triangle its neighbours, each with the corner whose edge is theirs; and its mate, or -1."""
+    mates = [-1] * count
+    beside: list[dict[int, int]] = [{} for _ in mates]
+    for h, g in zip(first, second, strict=True):
         beside[h // 3].setdefault(g // 3, h)
         beside[g // 3].setdefault(h // 3, g)
         if mates[h // 3] < 0 and mates[g // 3] < 0:
             mates[h // 3], mates[g // 3] = g // 3, h // 3
-    for f in range(len(faces)):
+    for f in range(count):
         if mates[f] < 0:
             _augment(f, beside, mates)
-    rows: list[list[int]] = []
-    for f, g in enumerate(mates):
-        if g < 0:
-            rows.append(faces[f].tolist())
-        elif f < g:  # in the order of their first triangles
-            h, apex = beside[f][g] % 3, faces[g, (beside[g][f] + 2) % 3]
-            rows.append([faces[f, h], apex, faces[f, (h + 1) % 3], faces[f, (h + 2) % 3]])
-    starts = np.cumsum([0] + [len(row) for row in rows])
-    colours = None if mesh.colours is None else mesh.colours.astype(np.float32)
-    return PolyMesh(mesh.positions, starts, np.concatenate(rows), colours=colours)
+    return beside, mates
+
+
+def _smooth(mesh: PolyMesh, faces: Ints, first: Ints, second: Ints) -> tuple[Ints, Ints]:
+    """Those corners whose edges are no creases."""
+    count = len(mesh.positions)
+    ends = faces[first // 3, first % 3], faces[first // 3, (first + 1) % 3]
+    creases = mesh.crease_edges[mesh.crease_sharpness > 0].astype(np.int64)
+    keys = np.minimum(*ends) * count + np.maximum(*ends)
+    is_smooth = ~np.isin(keys, creases[:, 0] * count + creases[:, 1])
+    return first[is_smooth], second[is_smooth]
 
 
 def _beside(faces: Ints, count: int) -> tuple[Ints, Ints]:

@@ -23,12 +23,15 @@ class Tessellated:
         Patches of placements whose triangles were written anew.
     deepest : int
         The largest depth shown.
+    is_capped : bool
+        Whether the budget left patches coarser than the rules have them.
     """
 
     triangles: int
     patches: int
     renewed: int
     deepest: int
+    is_capped: bool = False
 
 
 class SlateArrays(NamedTuple):
@@ -49,6 +52,9 @@ class SlateArrays(NamedTuple):
         Which face of the control mesh a patch is of.
     columns : list of (v, 3)
         Attributes by three: colours, then uvs and a column of zeros, those there are.
+    levels : (l,) uint8
+        The depth of the patch that a row of `faces` belongs to, 0 where there is none; l is f, rounded up to
+        a multiple of 4.
     """
 
     positions: NDArray[Any]
@@ -59,3 +65,4 @@ class SlateArrays(NamedTuple):
     depths: NDArray[np.int8]
     patch_faces: NDArray[np.int64]
     columns: list[NDArray[Any]]
+    levels: NDArray[np.uint8]

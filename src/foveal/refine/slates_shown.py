@@ -27,7 +27,7 @@ class Shown:
 
     def __init__(self, cage: SlateCage, placements: int, /) -> None:
         self._cage, count = cage, placements * len(cage.net.grid)
-        self._arena = Arena((3, np.int32))
+        self._arena = Arena((3, np.int32), (1, np.uint8))
         self.depths, self.sides = np.full(count, -1, np.int8), np.full(4 * count, -1, np.int8)
         self.places, self.counts = np.zeros(count, np.int64), np.zeros(count, np.int64)
         self.triangles = 0
@@ -38,6 +38,11 @@ class Shown:
     def rows(self) -> NDArray[np.int32]:
         """(rows, 3): of all that was ever lent; what is free now is (0, 0, 0)."""
         return self._arena.columns[0][: self._arena.rows]
+
+    @property
+    def levels(self) -> NDArray[np.uint8]:
+        """(rows,): depths of the patches that `rows` belong to; rounded up to a multiple of 4, zeros."""
+        return self._arena.columns[1].reshape(-1)[: -(-self._arena.rows // 4) * 4]
 
     def along_sides(self, depths: NDArray[np.int8], /) -> NDArray[np.int8]:
         """Of each entry's sides: the larger of the depths of the two patches."""
@@ -75,14 +80,15 @@ class Shown:
             return chosen
         self.depths, self.sides = depths, sides
         old, before, counts = self.counts[chosen], self.places[chosen], self.counts
-        self._arena.clear(0, before, old)
+        for column in range(2):
+            self._arena.clear(column, before, old)
         self._arena.release(before, old)
         kernels.triangles_of_each(chosen, depths, sides, counts)
         self.triangles += int(counts[chosen].sum() - old.sum())
         self.places[chosen] = self._arena.allocate(counts[chosen])
-        rows = self._arena.columns[0]
+        rows, levels = self._arena.columns
         kernels.show(places, chosen, depths, sides, self.places, m, rows)
-        self._arena.clear(0, self.places[chosen], counts[chosen], counts[chosen])
+        kernels.show_levels(chosen, depths, self.places, counts, levels)
         self._written = before, old, self.places[chosen], counts[chosen]
         return chosen
 

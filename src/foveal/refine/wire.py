@@ -3,6 +3,7 @@
 import json
 import math
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -12,18 +13,34 @@ from numpy.typing import NDArray
 from foveal.base.errors import FovealError
 from foveal.view.camera import Camera
 
+from ._kernels_wire import gather
 from .criteria import Criteria, Region
 from .depth_words import depths_of
 from .slates_depth import Depths
 from .slots import Placing, Slots
 
-__all__ = ["MAX_REQUEST_BYTES", "Buffers", "Head", "Request", "buffers", "message", "request_of"]
+__all__ = [
+    "MAX_REQUEST_BYTES",
+    "Buffers",
+    "Head",
+    "Ranges",
+    "Request",
+    "buffers",
+    "changes",
+    "message",
+    "request_of",
+]
+
+Words = NDArray[np.uint32]
+_NO_WORDS: Words = np.zeros(0, np.uint32)
+Ranges = NDArray[np.int64]
+"""(r, 2): first and the one after the last, ascending, apart from each other."""
 
 MAX_REQUEST_BYTES = 16_384
 
 _HEADER = struct.Struct("<4sIIIIIIIff")
 _MAGIC = b"FVL\x01"
-_SETTLED, _LIMIT, _NORMALS = 1, 2, 4
+_SETTLED, _LIMIT, _NORMALS, _COLOURS = 1, 2, 4, 8
 _COLOUR_SHIFT = 5
 
 #: Changes are looked for in blocks of so many words, as many as a uint64 has bytes. After 1 degree of orbit
@@ -131,17 +148,21 @@ def _criteria(data: dict[str, Any]) -> Criteria:
 
 
 class Buffers(NamedTuple):
-    """The four arrays of a message, each as (n,) uint32 words; normals may be in place of starts."""
+    """The arrays of a message, each as (n,) uint32 words.
 
-    faces: NDArray[np.uint32]
-    positions: NDArray[np.uint32]
-    starts: NDArray[np.uint32]
-    tags: NDArray[np.uint32]
+    Normals may be in place of starts; colours are one word a vertex, or none at all.
+    """
+
+    faces: Words
+    positions: Words
+    starts: Words
+    tags: Words
+    colours: Words = _NO_WORDS
 
     @classmethod
     def empty(cls) -> "Buffers":
         """Of no slots."""
-        return cls._make(np.zeros(0, np.uint32) for _ in range(4))
+        return cls(*(_NO_WORDS,) * 4)
 
     def grown(self, other: "Buffers", /) -> "Buffers":
         """The same with zeros behind, as long as those of `other`."""
@@ -175,22 +196,29 @@ class Head(NamedTuple):
     milliseconds: float
     threshold: float
     has_normals: bool = False
+    has_colours: bool = False
+
+    @property
+    def flags(self) -> int:
+        """As they are on the wire."""
+        told = _SETTLED * self.is_settled | _LIMIT * self.is_limit
+        return told | _NORMALS * self.has_normals | _COLOURS * self.has_colours
 
 
-def message(head: Head, new: Buffers, old: Buffers, /) -> bytes:
-    """A message that brings a page from `old`, which may be shorter, to `new`."""
-    found = [_changes(words, was) for words, was in zip(new, old.grown(new), strict=True)]
+def message(head: Head, new: Buffers, ranges: Sequence[Ranges], /) -> bytes:
+    """A message that brings a page to `new`, from what differs in these ranges of words of each array."""
+    found = [_gathered(words, bounds) for words, bounds in zip(new, ranges, strict=True)]
     table = np.concatenate(
         [
-            np.column_stack([np.full(len(begins), number), 4 * begins, 4 * (ends - begins)])
-            for number, (begins, ends, _) in enumerate(found)
+            np.column_stack([np.full(len(bounds), number), 4 * bounds[:, 0], 4 * np.diff(bounds)[:, 0]])
+            for number, bounds in enumerate(ranges)
         ]
     ).astype("<u4")
     header = _HEADER.pack(
         _MAGIC,
         head.sequence,
         head.base,
-        _SETTLED * head.is_settled | _LIMIT * head.is_limit | _NORMALS * head.has_normals,
+        head.flags,
         len(new.faces) // 3,
         len(new.positions) // 3,
         head.triangles,
@@ -198,19 +226,26 @@ def message(head: Head, new: Buffers, old: Buffers, /) -> bytes:
         head.milliseconds,
         head.threshold,
     )
-    return b"".join([header, table.tobytes(), *(words for _, _, words in found)])
+    return b"".join([header, table.tobytes(), *(words.tobytes() for words in found)])
 
 
-def _changes(
-    words: NDArray[np.uint32], was: NDArray[np.uint32]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], bytes]:
-    """(begins, ends, their bytes) of what differs: whole blocks, a lone equal one between them kept in."""
-    rows = np.zeros((-(-len(words) // _BLOCK), _BLOCK), np.uint32)
-    rows.reshape(-1)[: len(words)] = words
-    is_changed = np.zeros(rows.shape, np.bool_)
+def _gathered(words: Words, ranges: Ranges) -> Words:
+    found = np.empty(np.diff(ranges).sum(), np.uint32)
+    gather(words, ranges, found)
+    return found.astype("<u4", copy=False)
+
+
+def changes(new: Buffers, old: Buffers, /) -> list[Ranges]:
+    """Where `new` differs from `old`, which may be shorter; zeros are there then."""
+    return [_differences(words, was) for words, was in zip(new, old.grown(new), strict=True)]
+
+
+def _differences(words: Words, was: Words) -> Ranges:
+    """(r, 2): begins and ends of what differs: whole blocks, a lone equal one between them kept in."""
+    is_changed = np.zeros((-(-len(words) // _BLOCK), _BLOCK), np.bool_)
     np.not_equal(words, was, out=is_changed.reshape(-1)[: len(words)])
     is_sent = np.concatenate([[False], is_changed.view(np.uint64)[:, 0] != 0, [False]])
     is_sent[1:-1] |= is_sent[:-2] & is_sent[2:]
     edges = np.flatnonzero(np.diff(is_sent))
-    begins, ends = _BLOCK * edges[::2], np.minimum(_BLOCK * edges[1::2], len(words))
-    return begins, ends, rows[is_sent[1:-1]].reshape(-1)[: (ends - begins).sum()].astype("<u4").tobytes()
+    bounds: Ranges = np.minimum(_BLOCK * edges.reshape(-1, 2), len(words))
+    return bounds

@@ -11,19 +11,21 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing, refuse_same, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import Executor
+from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 
-from .cage_file import CageReport, ControlMesh, is_cage, read_cage, write_cage
-from .cage_polygons import PolygonCounts, read_polygons, told
+from .cage_file import CageReport, is_cage, read_cage, write_cage
+from .cage_options import polygons_with
+from .cage_polygons import PolygonCounts, told
+from .control_mesh import ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, RefineOptions, chosen
+from .source import Checked, Source, checked, name_of, triangles_of
 
 if TYPE_CHECKING:
     from foveal.multires import BuildReport
 
-__all__ = ["BuildOptions", "Source", "build", "checked", "title_of", "up_of"]
-
-Source = PathLike | TriMesh
+__all__ = ["BuildOptions", "build", "title_of", "up_of"]
 
 
 class BuildOptions(RefineOptions, total=False):
@@ -63,7 +65,7 @@ def build(
 
     Parameters
     ----------
-    source : path, TriMesh, or (n, 3) float
+    source : path, TriMesh, PolyMesh, or (n, 3) float
         A mesh file, a `.fov` to build anew, a mesh, or positions; the latter are followed by `faces`,
         (m, 3) int with indices in [0, n).
     output : path
@@ -87,7 +89,7 @@ def build(
     scheme : "sqrt3", "loop", "butterfly" or "catmull-clark", optional
         Keep the mesh as a control mesh, to be refined by this scheme where it is looked at; for
         catmull-clark its polygons, creases and corners.
-    criteria, depths, positions, budget, rate, sharp_edges
+    criteria, depths, positions, budget, rate, sharp_edges, pair_triangles, prim, placements
         With `scheme`: how it is meant to be refined; see `RefineOptions`.
 
     Returns
@@ -126,8 +128,8 @@ def build(
     up: Any = given.pop("up", None)
     if is_cold():  # asked before the file is opened: to survey an OBJ compiles its reader
         progress.note("First run: the kernels are compiled, which takes about half a minute, once.")
-    if isinstance(mesh, TriMesh):
-        blocks = source_from_mesh(mesh, up=up or "y")
+    if not isinstance(mesh, Path):
+        blocks = source_from_mesh(triangles_of(mesh), up=up or "y")
     elif is_cage(mesh):
         cage = read_cage(mesh)
         blocks = source_from_mesh(cage.mesh, name=str(mesh), up=up or cage.up)
@@ -139,16 +141,15 @@ def build(
 
 
 def _build_cage(
-    mesh: Path | TriMesh, output: Path, refinement: Refinement, options: BuildOptions, progress: Progress
+    mesh: Checked, output: Path, refinement: Refinement, options: BuildOptions, progress: Progress
 ) -> CageReport:
     """Keep a mesh as a control mesh; of one of the same scheme, what was not chosen stays as it is."""
     from foveal.base.jit import is_cold
     from foveal.mesh.topology import weld
 
     from .facing import tell_inside_out
-    from .read import read
 
-    name = "mesh" if isinstance(mesh, TriMesh) else str(mesh)
+    name = name_of(mesh)
     _refuse_shape(name, options)
     if is_cold():
         progress.note("First run: the kernels are compiled, which takes about a minute, once.")
@@ -157,13 +158,17 @@ def _build_cage(
         # What another scheme was told says little: its iterations are of other triangles.
         is_same = cage.refinement.scheme == refinement.scheme
         cage = replace(cage, refinement=cage.refinement.chosen(options) if is_same else refinement)
+        if refinement.scheme == CATMULL_CLARK:
+            cage = cage.with_options(options, name)
     elif refinement.scheme == CATMULL_CLARK:
-        cage = ControlMesh.of_polygons(read_polygons(mesh, name), refinement, "y")
+        polygons = polygons_with(mesh, options, progress=progress)
+        cage = ControlMesh.of_polygons(polygons, refinement, "y").with_placements(options, name)
     else:
-        cage = ControlMesh(mesh if isinstance(mesh, TriMesh) else read(mesh), refinement, "y")
+        if isinstance(mesh, PolyMesh):
+            _tell_polygons(mesh, refinement.scheme, progress)
+        cage = ControlMesh(triangles_of(mesh), refinement, "y")
     if cage.polygons is not None and refinement.scheme != CATMULL_CLARK:
-        counts = told(PolygonCounts.of(cage.polygons))
-        progress.note(f"Kept as plain triangles, since {refinement.scheme} knows nothing else: {counts}.")
+        _tell_polygons(cage.polygons, refinement.scheme, progress)
     sharp, angle = cage.sharp, options.get("sharp_edges")
     if sharp is not None and refinement.scheme != "sqrt3":
         progress.note(f"Sharp edges that are left out, since {refinement.scheme} knows none: {len(sharp):,}.")
@@ -174,12 +179,18 @@ def _build_cage(
         refinement=cage.refinement,
         up=options.get("up") or cage.up,
         sharp_edges=sharp if angle is None else angle,
+        placements=cage.placements if refinement.scheme == CATMULL_CLARK else None,
         name=name,
     )
     if report.welded:
         progress.note(f"Vertices at the same place as another, made one with it: {report.welded:,}.")
     tell_inside_out(weld(cage.mesh)[0], name, progress)
     return report
+
+
+def _tell_polygons(mesh: PolyMesh, scheme: str, progress: Progress) -> None:
+    counts = told(PolygonCounts.of(mesh))
+    progress.note(f"Kept as plain triangles, since {scheme} knows nothing else: {counts}.")
 
 
 def _refuse_shape(name: str, options: BuildOptions) -> None:
@@ -192,33 +203,12 @@ def _refuse_shape(name: str, options: BuildOptions) -> None:
         )
 
 
-def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Path | TriMesh, Path]:
+def _arguments(source: Any, rest: tuple[Any, ...]) -> tuple[Checked, Path]:
     """The mesh and the output of a call in any of the three forms."""
-    is_whole = isinstance(source, (str, os.PathLike, TriMesh))
+    is_whole = isinstance(source, (str, os.PathLike, TriMesh, PolyMesh))
     if len(rest) != (1 if is_whole else 2):
         raise TypeError("call build(path, output), build(mesh, output) or build(positions, faces, output)")
     return (checked(source) if is_whole else TriMesh.of(source, rest[0])), Path(rest[-1])
-
-
-def checked(source: Any, /) -> Path | TriMesh:
-    """A path, or a mesh whose arrays are what they should be, which its constructor does not ask.
-
-    An index that is no vertex would have kernels read what is not theirs.
-
-    Raises
-    ------
-    FovealError
-        As `TriMesh.of` does.
-    TypeError
-        If it is neither.
-    """
-    if isinstance(source, TriMesh):
-        return TriMesh.of(source.positions, source.faces, normals=source.normals, colours=source.colours)
-    if isinstance(source, (str, os.PathLike)):
-        return Path(source)
-    raise TypeError(
-        f"a path is needed, or a mesh as TriMesh.of(positions, faces) makes it; got {type(source).__name__}"
-    )
 
 
 def up_of(options: BuildOptions, /) -> str:

@@ -1,6 +1,6 @@
 """The `.fov` of kind "cage": a control mesh, and how it is meant to be refined. See spec/container.md."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
 
 from .cage_polygons import PolygonCounts, polygons_chunk, polygons_header, polygons_of
+from .control_mesh import MOST_CORNERS, ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .refinement import Refinement, refinement_json, refinement_of
 
@@ -21,65 +22,11 @@ if TYPE_CHECKING:  # which knows of kernels: half a second for those who show pa
     from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.trimesh import TriMesh
 
-__all__ = ["CageReport", "ControlMesh", "control_mesh", "is_cage", "read_cage", "write_cage"]
+__all__ = ["CageReport", "control_mesh", "is_cage", "read_cage", "write_cage"]
 
 KIND, VERSION, POLYGONS_VERSION = "cage", 1, 2
 _MOST_SHARP = 500_000  # their list is part of the header, of which 16 MiB are read
-_MOST = 1 << 26  # of vertices, of triangles: what a chunk can hold, and more than anybody refines
-
-
-@dataclass(frozen=True, slots=True)
-class ControlMesh:
-    """What a `.fov` of kind "cage" holds.
-
-    Attributes
-    ----------
-    mesh : TriMesh
-        Positions and faces only; of polygons their fans.
-    refinement : Refinement
-        What is meant where nothing else is chosen.
-    up : "x", "y" or "z"
-    sharp : (k, 2) int32 or None
-        The vertices of edges that stay sharp, where there are any.
-    polygons : PolyMesh or None
-        What it is made of where that is more than triangles, for catmull-clark.
-    """
-
-    mesh: "TriMesh"
-    refinement: Refinement
-    up: str
-    sharp: NDArray[np.int32] | None = None
-    polygons: "PolyMesh | None" = None
-
-    @classmethod
-    def of_polygons(cls, polygons: "PolyMesh", refinement: Refinement, up: str, /) -> "ControlMesh":
-        """One of polygons."""
-        return cls(polygons.triangulated(), refinement, up, None, polygons)
-
-    def surface(self) -> "PolyMesh":
-        """The polygons, or the triangles as such."""
-        from foveal.mesh.polymesh import PolyMesh
-
-        return self.polygons or PolyMesh.of_triangles(self.mesh)
-
-    def refuse_misfit(self, scheme: str, name: str, /) -> None:
-        """Say that it cannot be refined by a scheme.
-
-        Raises
-        ------
-        FovealError
-            If it has what the scheme does not know.
-        """
-        has, known = None, "sqrt3"
-        if self.sharp is not None and scheme != "sqrt3":
-            has = "sharp edges"
-        elif self.polygons is not None and scheme != CATMULL_CLARK:
-            has, known = "polygons and their creases", CATMULL_CLARK
-        if has:
-            raise FovealError(
-                f"{name}: it has {has}, which {scheme} does not know. Choose {known}, or build it anew by "
-                f"{scheme}, which leaves them out."
-            )
+_MOST = MOST_CORNERS  # of vertices, of triangles
 
 
 @dataclass(frozen=True)
@@ -99,6 +46,8 @@ class CageReport:
         Of the file.
     polygons : PolygonCounts or None
         For catmull-clark.
+    placements : int
+        How often it stands.
     """
 
     triangles: int
@@ -108,6 +57,7 @@ class CageReport:
     scheme: str
     bytes: int
     polygons: PolygonCounts | None = None
+    placements: int = 1
 
 
 def write_cage(
@@ -118,12 +68,13 @@ def write_cage(
     refinement: Refinement,
     up: str = "y",
     sharp_edges: ArrayLike | None = None,
+    placements: ArrayLike | None = None,
     name: str = "mesh",
 ) -> CageReport:
     """Write a control mesh; of triangles, vertices at one place become one.
 
     It is of polygons for catmull-clark, and of triangles for all else. `sharp_edges` is an angle by which
-    those bend that stay sharp, or (k, 2) int, their vertices then.
+    those bend that stay sharp, or (k, 2) int, their vertices then. `placements`, (k, 4, 4), are of polygons.
 
     Raises
     ------
@@ -135,12 +86,12 @@ def write_cage(
     from foveal.refine.cage import Cage
 
     if isinstance(mesh, PolyMesh):
-        return _write_polygons(mesh.checked(name), path, refinement, up, name)
+        return _write_polygons(mesh.checked(name), path, refinement, up, placements, name)
     welded = weld(mesh)[0]
     positions, faces = welded.positions, welded.faces
     if refinement.scheme == CATMULL_CLARK:
         polygons = PolyMesh.of_triangles(welded).checked(name)
-        return _write_polygons(polygons, path, refinement, up, name)
+        return _write_polygons(polygons, path, refinement, up, placements, name)
     _refuse_large(name, len(positions), len(faces))
     Cage.of(welded, name=name)
     sharp = _sharp_of(welded, sharp_edges, name)
@@ -159,18 +110,32 @@ def write_cage(
 
 
 def _write_polygons(
-    mesh: "PolyMesh", path: PathLike, refinement: Refinement, up: str, name: str
+    mesh: "PolyMesh",
+    path: PathLike,
+    refinement: Refinement,
+    up: str,
+    placements: ArrayLike | None,
+    name: str,
 ) -> CageReport:
+    from .cage_options import placements_with
+
     if refinement.scheme != CATMULL_CLARK:
         raise FovealError(f"{name}: polygons are refined by {CATMULL_CLARK} alone. Choose that.")
     counts = polygons_header(mesh)
     _refuse_large(name, *(counts[key] for key in ("vertices", "corners", "creases")))
-    header = {**_frame(mesh.positions, up), **counts, **refinement_json(refinement)}
+    matrices = placements_with(mesh, {"placements": placements}, name)
+    cage = ControlMesh.of_polygons(mesh, refinement, up, placements=matrices)
+    header = {**_frame(cage.mesh.positions, up), **counts, **refinement_json(refinement)}
+    if matrices is not None:
+        header["placements"] = len(matrices)
     with create(path, kind=KIND, version=POLYGONS_VERSION) as writer:
+        if matrices is not None:
+            writer.add_chunk(matrices.astype("<f8").tobytes())
         writer.finish(header, polygons_chunk(mesh))
     size = Path(path).stat().st_size
     found = PolygonCounts.of(mesh)
-    return CageReport(counts["triangles"], counts["vertices"], 0, 0, refinement.scheme, size, found)
+    k = 1 if matrices is None else len(matrices)
+    return CageReport(counts["triangles"], counts["vertices"], 0, 0, refinement.scheme, size, found, k)
 
 
 def _refuse_large(name: str, *counts: int) -> None:
@@ -229,14 +194,30 @@ def control_mesh(file: Container, /) -> ControlMesh:
     file.expect(KIND, VERSION, POLYGONS_VERSION)
     if file.version == POLYGONS_VERSION:
         polygons = polygons_of(file, partial(_count, file), partial(_damaged, file))
-        up = _up_of(file, polygons.positions)
+        placements = _placements(file, polygons)
         refinement = refinement_of(file.header, file.name)
         if refinement.scheme != CATMULL_CLARK:
             raise _damaged(file, "scheme")
-        return ControlMesh.of_polygons(polygons, refinement, up)
+        cage = ControlMesh.of_polygons(polygons, refinement, "y", placements=placements)
+        return replace(cage, up=_up_of(file, cage.mesh.positions))
     mesh = _triangles(file)
     up = _up_of(file, mesh.positions)
     return ControlMesh(mesh, refinement_of(file.header, file.name), up, _sharp(file, len(mesh.positions)))
+
+
+def _placements(file: Container, mesh: "PolyMesh") -> "NDArray[np.float64] | None":
+    """(k, 4, 4), or None where the polygons stand once, where they are."""
+    from .cage_options import placements_of
+
+    count = _count(file, "placements") if "placements" in file.header else 0
+    if len(file) != (2 if count else 1):
+        raise _damaged(file, "lengths")
+    if not count:
+        return None
+    data = file.chunk(1)
+    if len(data) != 128 * count:
+        raise _damaged(file, "placements")
+    return placements_of(np.frombuffer(data, "<f8").reshape(-1, 4, 4), mesh, file.name)
 
 
 def _triangles(file: Container) -> "TriMesh":

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from foveal.container import Container
 
 if TYPE_CHECKING:
     from foveal.mesh.polymesh import PolyMesh
-    from foveal.mesh.trimesh import TriMesh
 
 __all__ = [
     "PolygonCounts",
@@ -21,7 +19,6 @@ __all__ = [
     "polygons_chunk",
     "polygons_header",
     "polygons_of",
-    "read_polygons",
     "told",
 ]
 
@@ -39,6 +36,8 @@ class PolygonCounts:
     creases, semi_sharp, corners : int
         Edges tagged sharp, those of them that become smooth after some steps, and vertices tagged sharp.
     boundary : "edge_only", "edge_and_corner" or "none"
+    holes : int
+        Faces that are left out.
     """
 
     triangles: int
@@ -48,6 +47,7 @@ class PolygonCounts:
     semi_sharp: int
     corners: int
     boundary: str
+    holes: int = 0
 
     @classmethod
     def of(cls, mesh: "PolyMesh", /) -> "PolygonCounts":
@@ -70,6 +70,7 @@ class PolygonCounts:
             semi_sharp=int(((sharp > 0) & (sharp < INFINITELY_SHARP)).sum()),
             corners=int((mesh.corner_sharpness > 0).sum()),
             boundary=mesh.boundary,
+            holes=len(mesh.holes),
         )
 
 
@@ -90,7 +91,13 @@ def told(counts: PolygonCounts, /) -> str:
         creases = [f"{creases[0]} ({counts.semi_sharp:,} semi-sharp)"]
     faces = [*some(counts.quads, "quad"), *some(counts.triangles, "triangle")]
     return ", ".join(
-        [*faces, *some(counts.larger, "larger polygon"), *creases, *some(counts.corners, "sharp corner")]
+        [
+            *faces,
+            *some(counts.larger, "larger polygon"),
+            *some(counts.holes, "hole"),
+            *creases,
+            *some(counts.corners, "sharp corner"),
+        ]
     )
 
 
@@ -111,28 +118,6 @@ def has_border(mesh: "PolyMesh", /) -> bool:
     return 2 * len(edges) != len(corners)
 
 
-def read_polygons(source: "Path | TriMesh", name: str, /) -> "PolyMesh":
-    """The polygons of a mesh file with their tags; the triangles of a `.fov` of patches or of a mesh, welded.
-
-    Raises
-    ------
-    FovealError
-        If the file cannot be read, or is no surface.
-    """
-    from foveal.mesh.polymesh import PolyMesh
-
-    from .read import read
-
-    if isinstance(source, Path) and source.suffix.lower() != ".fov":
-        from foveal.mesh.io import read_polygons
-
-        return read_polygons(source)
-    from foveal.mesh.topology import weld
-
-    mesh = read(source) if isinstance(source, Path) else source
-    return PolyMesh.of_triangles(weld(mesh)[0]).checked(name)
-
-
 def polygons_header(mesh: "PolyMesh", /) -> dict[str, Any]:
     """What the header says of the arrays in chunk 0."""
     attributes = {"colour": mesh.colours, "uv": mesh.uvs}
@@ -144,6 +129,7 @@ def polygons_header(mesh: "PolyMesh", /) -> dict[str, Any]:
         "creases": len(mesh.crease_edges),
         "sharp_corners": len(mesh.corner_vertices),
         "boundary": mesh.boundary,
+        **({"holes": len(mesh.holes)} if len(mesh.holes) else {}),
         "attributes": [name for name, values in attributes.items() if values is not None],
     }
 
@@ -159,6 +145,7 @@ def polygons_chunk(mesh: "PolyMesh", /) -> bytes:
         ("<u4", mesh.corner_vertices),
         ("<f4", mesh.corner_sharpness),
         *(("<f4", values) for values in (mesh.colours, mesh.uvs) if values is not None),
+        ("<u4", mesh.holes),
     ]
     return b"".join(np.ascontiguousarray(values).astype(kind).tobytes() for kind, values in columns)
 
@@ -193,7 +180,8 @@ def polygons_of(
         raise damaged("attributes")
     widths = [_ATTRIBUTES[name] for name in attributes]
     data = file.chunk(0)
-    if len(file) != 1 or len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n):
+    h = count("holes") if "holes" in file.header else 0
+    if len(data) != 24 * n + 4 * (m + k + 3 * c + 2 * p + sum(widths) * n + h):
         raise damaged("lengths")
     at = 0
 
@@ -210,4 +198,5 @@ def polygons_of(
     tags = column("<u4", k), column("<u4", c, 2), column("<f4", c), column("<u4", p), column("<f4", p)
     further = {name: column("<f4", n, width) for name, width in zip(attributes, widths, strict=True)}
     parts: list[Any] = [positions, starts, *tags, boundary, further.get("colour"), further.get("uv")]
+    parts.append(column("<u4", h))
     return PolyMesh(*parts).checked(file.name)

@@ -91,7 +91,8 @@ def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:
             "triangles": len(cage.mesh.faces),
             "vertices": len(cage.mesh.positions),
             "polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons)),
-            "is_closed": not has_border(cage.polygons),
+            "placements": 1 if cage.placements is None else len(cage.placements),
+            "is_closed": not has_border(cage.polygons) and len(cage.polygons.holes) == 0,
         }
     surface = Cage.of(cage.mesh, name=str(path))
     Cage.of(cage.mesh, sharp=cage.sharp, name=str(path))

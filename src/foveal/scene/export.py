@@ -11,10 +11,10 @@ from foveal.base.progress import SILENT, Progress
 from foveal.lod.graph import Graph
 from foveal.mesh.trimesh import TriMesh
 
-from .build import BuildOptions, Source, checked, up_of
+from .build import BuildOptions, up_of
 from .cage_file import is_cage, read_cage
 from .prepare import prepare, refuse_shaping
-from .read import read
+from .source import Checked, Source, checked, name_of, triangles_of
 
 __all__ = ["error_for_triangles", "export", "refuse_mesh_output", "write_mesh"]
 
@@ -35,7 +35,7 @@ def export(
 
     Parameters
     ----------
-    source : path or TriMesh
+    source : path, TriMesh or PolyMesh
         A `.fov`, or a mesh, which is built into the user's cache first if it has to become coarser.
     output : path, optional
         Where to write it too; the suffix, `.ply` or `.glb`, says the format.
@@ -68,7 +68,7 @@ def export(
     from foveal import multires
 
     source = checked(source)
-    name = "mesh" if isinstance(source, TriMesh) else str(source)
+    name = name_of(source)
     _refuse_limits(name, error, triangles)
     if isinstance(source, Path):
         _refuse_source(source)
@@ -85,7 +85,7 @@ def export(
                 error = error_for_triangles(asset.graph, triangles, name=name)
             mesh, up = multires.extract(asset, error=error), asset.header.get("up", "y")
     else:
-        mesh = source if isinstance(source, TriMesh) else read(source)
+        mesh = triangles_of(source)
     if output is not None:
         write_mesh(mesh, Path(output), up)
     return mesh
@@ -101,7 +101,7 @@ def _whole(path: Path, error: float | None, triangles: int | None) -> tuple[TriM
     return cage.mesh, cage.up
 
 
-def _is_fov(source: Path | TriMesh) -> bool:
+def _is_fov(source: Checked) -> bool:
     return isinstance(source, Path) and source.suffix.lower() == ".fov"
 
 
@@ -120,7 +120,7 @@ def _refuse_source(path: Path) -> None:
     refuse_missing(path)
 
 
-def refuse_mesh_output(output: Path, source: Path | TriMesh, /) -> None:
+def refuse_mesh_output(output: Path, source: Checked, /) -> None:
     """Say before any work that a mesh cannot be written so."""
     if output.suffix.lower() not in _SUFFIXES:
         raise FovealError(f"{output}: the name must end in {' or '.join(_SUFFIXES)}, which says the format.")

@@ -24,17 +24,18 @@ from .refinement import refinement_json
 from .scene import read_scene
 
 if TYPE_CHECKING:
+    from foveal.mesh.polymesh import PolyMesh
     from foveal.mesh.trimesh import TriMesh
 
 __all__ = ["info"]
 
 
-def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str, Any]:
+def info(source: "PathLike | TriMesh | PolyMesh", /, *, up: str | None = None) -> dict[str, Any]:
     """Say what is in a `.fov`, a mesh or a scene.json.
 
     Parameters
     ----------
-    source : path or TriMesh
+    source : path, TriMesh or PolyMesh
         What to look into. Of a `.fov` only the beginning is read; a mesh is looked at whole.
     up : "x", "y" or "z", optional
         Of a mesh, the axis that points up, where it is not the format's own.
@@ -45,7 +46,8 @@ def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str,
         JSON can hold it. `kind` is "multires", "cage", "mesh" or "scene". For a `.fov`, `level_table` has a
         row for each level, coarse to fine: the triangles that are shown when all up to it is expanded,
         their largest distance to the original (`error`, an upper bound), and the level's own bytes. For a
-        mesh, `topology` counts components, open and non-manifold edges, and what else is odd. For a control
+        mesh, `topology` counts components, open and non-manifold edges, and what else is odd; of a PolyMesh
+        `polygons` counts its faces, creases and corners. For a control
         mesh, `scheme`, `criteria` and so on say how it is meant to be refined.
 
     Raises
@@ -65,11 +67,15 @@ def info(source: "PathLike | TriMesh", /, *, up: str | None = None) -> dict[str,
     True
     """
     if not isinstance(source, (str, os.PathLike)):
-        from .build import checked
+        from foveal.mesh.polymesh import PolyMesh
+
+        from .source import checked, triangles_of
 
         mesh = checked(source)
-        assert not isinstance(mesh, Path)
-        return _mesh_info(mesh, None, up)
+        facts = _mesh_info(triangles_of(mesh), None, up)
+        if isinstance(mesh, PolyMesh):
+            facts["polygons"] = dataclasses.asdict(PolygonCounts.of(mesh))
+        return facts
     path = Path(source)
     refuse_missing(path)
     suffix = path.suffix.lower()
@@ -131,6 +137,7 @@ def _cage_info(file: Container, size: int) -> dict[str, Any]:
         **(
             {} if cage.polygons is None else {"polygons": dataclasses.asdict(PolygonCounts.of(cage.polygons))}
         ),
+        **({} if cage.placements is None else {"placements": len(cage.placements)}),
         **refinement_json(cage.refinement),
         "generator": file.header.get("generator"),
     }

@@ -10,7 +10,7 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from .apart import apart
-from .cage_file import ControlMesh
+from .control_mesh import ControlMesh
 from .depth_rules import CATMULL_CLARK, depths_with
 from .refine_size import most_triangles
 from .refinement import Refinement
@@ -23,7 +23,8 @@ def patched(
 ) -> TriMesh:
     """A control mesh as Catmull-Clark patches, with limit normals: sharp at creases.
 
-    It has no more triangles than its budget or the memory that is free allows, but for the least there is.
+    It has no more triangles than its budget or the memory that is free allows, but for the least there is;
+    that memory was the limit is told.
 
     Raises
     ------
@@ -33,16 +34,24 @@ def patched(
     refinement = cage.refinement
     most = most_triangles(CATMULL_CLARK)
 
-    def work() -> TriMesh:
+    own = refinement.budget
+    budget = min(own or most, most)
+
+    def work() -> tuple[TriMesh, bool]:
         from foveal.refine.slates import Slates
 
-        surface = Slates(cage.surface(), name=name)
-        budget = min(refinement.budget or most, most)
-        surface.update(camera, depths=depths_with(refinement.depths, {}), budget=budget)
-        return surface.mesh()
+        surface = Slates(cage.surface(), placements=cage.placements, name=name)
+        done = surface.update(camera, depths=depths_with(refinement.depths, {}), budget=budget)
+        return surface.mesh(), done.is_capped
 
     with progress.stage("Tessellating", None):
-        return apart(lambda _: work())
+        mesh, is_capped = apart(lambda _: work())
+    if is_capped and budget != own:
+        progress.note(
+            f"{name}: it is coarser than the rules have it, within the {budget:,} triangles that would do "
+            "here. Give a --budget of your own, or fewer --iterations."
+        )
+    return mesh
 
 
 def uniformly(cage: ControlMesh, name: str, /) -> Refinement:
@@ -59,7 +68,7 @@ def uniformly(cage: ControlMesh, name: str, /) -> Refinement:
     surface = cage.surface()
     has_quads_only = bool((np.diff(surface.starts) == 4).all())
     patches = surface.faces if has_quads_only else len(surface.corners)
-    count = patches * 2 * 4**depth
+    count = patches * 2 * 4**depth * (1 if cage.placements is None else len(cage.placements))
     most = most_triangles(CATMULL_CLARK)
     if count > most and not cage.refinement.budget:
         raise FovealError(

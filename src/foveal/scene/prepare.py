@@ -5,6 +5,7 @@ builds, so that a foveal that changed never meets its older self's files. It is 
 by deleting what was not used for longest.
 """
 
+import dataclasses
 import hashlib
 import os
 import time
@@ -19,20 +20,24 @@ import platformdirs
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
+from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 
-from .build import BuildOptions, Source, build, checked, title_of
+from .build import BuildOptions, build, title_of
 from .cage_file import is_cage, read_cage
+from .depth_rules import is_chosen
 from .facing import Once, tell_inside_out
 from .refinement import RefineOptions, chosen
 from .scene import Layer, Scene, read_scene, scene_of
+from .source import Source, checked, name_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
 
 CACHE_BYTES = 10_000_000_000
 """How much the cache of built files may hold before the oldest go."""
 
-_SHAPING = ("bits", "step", "normals", "up", "sharp_edges")  # the options that change the bytes of a build
+# The options that change the bytes of a build.
+_SHAPING = ("bits", "step", "normals", "up", "sharp_edges", "pair_triangles", "prim", "placements")
 _REFINING = (
     "criteria",
     "depths",
@@ -59,7 +64,7 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
 
     Parameters
     ----------
-    source : Scene, path or TriMesh
+    source : Scene, path, TriMesh or PolyMesh
         A scene is returned as it is. A path is of a scene.json, a `.fov`, or a mesh file; a mesh, in a
         file or in memory, is built into the user's cache unless it is there.
     progress, **options
@@ -81,10 +86,10 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
             _look_at(layer, str(layer.path), progress)
         return scene
     progress = Once(progress)
-    title = "mesh" if isinstance(source, TriMesh) else title_of(source)
+    title = title_of(source) if isinstance(source, Path) else "mesh"
     path = prepare(source, progress=progress, **options)
     scene = scene_of(path, title=title, options=cast(RefineOptions, options))
-    _look_at(scene.layers[0], "mesh" if isinstance(source, TriMesh) else str(source), progress)
+    _look_at(scene.layers[0], name_of(source), progress)
     return scene
 
 
@@ -110,7 +115,7 @@ def prepare(
 
     Parameters
     ----------
-    source : path or TriMesh
+    source : path, TriMesh or PolyMesh
         A `.fov`, which is returned as it is, or a mesh, in a file of any format or in memory.
     folder
         The cache; by default the user's.
@@ -127,19 +132,19 @@ def prepare(
     """
     _refuse_unknown(options)
     root = Path(folder) if folder is not None else cache_folder()
-    if not isinstance(source, TriMesh) and Path(source).suffix.lower() == ".fov":
+    source = Path(source) if isinstance(source, (str, os.PathLike)) else source
+    if isinstance(source, Path) and source.suffix.lower() == ".fov":
         refuse_missing(source)
         refuse_shaping(source, options, is_refined=is_cage(source))
-        return Path(source)
+        return source
     if chosen(options) is not None:  # how else it is refined the scene says, so one file will do
         options = cast(BuildOptions, {k: v for k, v in options.items() if k not in _REFINING})
-    shaping = {name: options.get(name) for name in (*_SHAPING, "scheme")}
-    if isinstance(source, TriMesh):
-        name = f"mesh-{_fingerprint_of_mesh(source, shaping)}"
+    shaping = {name: _words(options.get(name)) for name in (*_SHAPING, "scheme")}
+    if isinstance(source, Path):
+        refuse_missing(source)
+        name = f"{_stem(source)}-{_fingerprint(source, shaping)}"
     else:
-        path = Path(source)
-        refuse_missing(path)
-        name = f"{_stem(path)}-{_fingerprint(path, shaping)}"
+        name = f"mesh-{_fingerprint_of_mesh(source, shaping)}"
     built = root / f"{name}.fov"
     if built.exists():
         # Only the time of use changes: that of writing is in the ETag, and browsers keep what they have.
@@ -151,6 +156,13 @@ def prepare(
     build(source, built, progress=progress, **options)
     _forget_oldest(root, limit_bytes, keep=built)
     return built
+
+
+def _words(value: object) -> object:
+    """An option, written out in full."""
+    return (
+        value if value is None or isinstance(value, (str, bool, int, float)) else np.asarray(value).tolist()
+    )
 
 
 def _refuse_unwritable(root: Path) -> None:
@@ -173,7 +185,7 @@ def refuse_shaping(source: PathLike, options: BuildOptions, /, *, is_refined: bo
     """
     _refuse_unknown(options)
     names = _SHAPING if is_refined else (*_SHAPING, "scheme", *_REFINING)
-    late = [name for name in names if options.get(name) is not None]
+    late = [name for name in names if is_chosen(options, name)]
     if late:
         raise FovealError(
             f"{source}: it is built already, so {' and '.join(late)} would change nothing. "
@@ -195,8 +207,9 @@ def _builder() -> str:
     state = hashlib.blake2b()
     rooms = (package / room for room in ("base", "coding", "container", "mesh", "multires"))
     files = (file for room in rooms for file in sorted(room.rglob("*.py")))
-    own = ("cage_file.py", "cage_polygons.py", "depth_rules.py", "refinement.py")
-    for file in (*files, *(package / "scene" / name for name in own)):
+    own = ("cage_file.py", "cage_options.py", "cage_polygons.py", "depth_rules.py", "refinement.py")
+    beside = (*(package / "scene" / name for name in own), package / "refine" / "slates_pairs.py")
+    for file in (*files, *beside):
         state.update(file.read_bytes())
     return state.hexdigest()
 
@@ -228,12 +241,16 @@ def _fingerprint(path: Path, shaping: dict[str, Any]) -> str:
     return state.hexdigest()[:_DIGITS]
 
 
-def _fingerprint_of_mesh(mesh: TriMesh, shaping: dict[str, Any]) -> str:
+def _fingerprint_of_mesh(mesh: TriMesh | PolyMesh, shaping: dict[str, Any]) -> str:
     """The same for a mesh in memory."""
-    state = hashlib.blake2b(f"{_builder()} {shaping}".encode())
-    for array in (mesh.positions, mesh.faces, mesh.normals, mesh.colours):
-        state.update(b"none" if array is None else f"{array.shape}".encode())
-        state.update(b"" if array is None else np.ascontiguousarray(array).data)
+    state = hashlib.blake2b(f"{_builder()} {shaping} {type(mesh).__name__}".encode())
+    for field in dataclasses.fields(mesh):
+        value = getattr(mesh, field.name)
+        if isinstance(value, np.ndarray):
+            state.update(f"{value.shape}".encode())
+            state.update(np.ascontiguousarray(value).data)
+        else:
+            state.update(f"{value}".encode())
     return state.hexdigest()[:_DIGITS]
 
 

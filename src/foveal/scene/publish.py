@@ -8,9 +8,10 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, is_filled, refuse_unwritable, whole_folder
 from foveal.base.progress import SILENT, Progress
 
-from .build import BuildOptions, Source
+from .build import BuildOptions
 from .prepare import load
 from .scene import Scene, asset_names, scene_json
+from .source import Source
 from .viewer_files import viewer_files
 
 __all__ = ["publish"]
@@ -51,7 +52,7 @@ def publish(
 
     Parameters
     ----------
-    source : path, TriMesh or Scene
+    source : path, TriMesh, PolyMesh or Scene
         A mesh, a `.fov` or a scene.json. A mesh is built into the user's cache first.
     folder
         New, or empty, or with `force` one that was published before.

@@ -11,23 +11,26 @@ from numpy.typing import NDArray
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
 from foveal.base.progress import SILENT, Progress
+from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from .build import Source, checked, up_of
-from .cage_file import ControlMesh, is_cage, read_cage
-from .cage_polygons import PolygonCounts, read_polygons, told
+from .build import up_of
+from .cage_file import is_cage, read_cage
+from .cage_options import polygons_with
+from .cage_polygons import PolygonCounts, told
+from .control_mesh import ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .export import refuse_mesh_output, write_mesh
 from .facing import tell_inside_out
 from .patched import uniformly
 from .prepare import refuse_shaping
-from .read import read
 from .refine_size import everywhere as everywhere_count
 from .refine_size import most_triangles
 from .refined import filtered, refined
 from .refinement import RefineOptions, chosen
 from .render import home, read_camera
+from .source import Checked, Source, checked, name_of, triangles_of
 
 __all__ = ["refine"]
 
@@ -51,7 +54,7 @@ def refine(
 
     Parameters
     ----------
-    source : path or TriMesh
+    source : path, TriMesh or PolyMesh
         A mesh, vertices at one place made one, or a `.fov` that holds a control mesh.
     output : path, optional
         Where to write it too; the suffix, `.ply` or `.glb`, says the format.
@@ -69,7 +72,8 @@ def refine(
     progress : Progress
         Told how far it is.
     **options
-        See `RefineOptions`. By default what the file says; of any other mesh √3 with the default criteria.
+        See `RefineOptions`. By default what the file says, of a PolyMesh catmull-clark, and of any other
+        mesh √3; with the default rules.
 
     Returns
     -------
@@ -94,12 +98,13 @@ def refine(
     source = checked(source)
     if output is not None:
         refuse_mesh_output(Path(output), source)
-    name = "mesh" if isinstance(source, TriMesh) else str(source)
+    name = name_of(source)
     if isinstance(camera, (str, os.PathLike)):
         camera = read_camera(camera)
-    cage = _cage(source, name, up, options)
+    cage = _cage(source, name, up, options, progress)
     if cage.polygons is not None:
-        progress.note(f"{name}: {told(PolygonCounts.of(cage.polygons))}.")
+        places = "" if cage.placements is None else f", in {len(cage.placements):,} places"
+        progress.note(f"{name}: {told(PolygonCounts.of(cage.polygons))}{places}.")
     tell_inside_out(cage.mesh, name, progress)
     if mode == "filter" and (everywhere or visible_only):
         what = "everywhere" if everywhere else "visible_only"
@@ -116,7 +121,9 @@ def refine(
     return mesh
 
 
-def _cage(source: Path | TriMesh, name: str, up: str | None, options: RefineOptions) -> ControlMesh:
+def _cage(
+    source: Checked, name: str, up: str | None, options: RefineOptions, progress: Progress
+) -> ControlMesh:
     """What is to be refined, and how."""
     from foveal.mesh.topology import weld
 
@@ -129,15 +136,16 @@ def _cage(source: Path | TriMesh, name: str, up: str | None, options: RefineOpti
             cage = read_cage(source)
             own = cage.refinement.chosen(options)
             cage.refuse_misfit(own.scheme, name)
-            if own.scheme == CATMULL_CLARK:
-                return ControlMesh.of_polygons(cage.surface(), own, cage.up)
-            return ControlMesh(cage.mesh, own, cage.up, _sharp(cage.mesh, options, cage.sharp))
-    refinement = chosen({**options, "scheme": options.get("scheme") or "sqrt3"})
+            cage = dataclasses.replace(cage, refinement=own, sharp=_sharp(cage.mesh, options, cage.sharp))
+            return cage.with_options(options, name) if own.scheme == CATMULL_CLARK else cage
+    usual = CATMULL_CLARK if isinstance(source, PolyMesh) else "sqrt3"
+    refinement = chosen({**options, "scheme": options.get("scheme") or usual})
     assert refinement is not None
     if refinement.scheme == CATMULL_CLARK:
-        return ControlMesh.of_polygons(read_polygons(source, name), refinement, up_of({"up": up}))
-    mesh = source if isinstance(source, TriMesh) else read(source)
-    welded = weld(mesh)[0]
+        polygons = polygons_with(source, options, progress=progress)
+        cage = ControlMesh.of_polygons(polygons, refinement, up_of({"up": up}))
+        return cage.with_placements(options, name)
+    welded = weld(triangles_of(source))[0]
     return ControlMesh(welded, refinement, up_of({"up": up}), _sharp(welded, options, None))
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from foveal.view.camera import Camera
 
-from .cage_file import ControlMesh
+from .control_mesh import ControlMesh
 
 __all__ = ["MOST_TRIANGLES", "everywhere", "expected", "most_triangles"]
 

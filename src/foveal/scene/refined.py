@@ -10,7 +10,7 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from .apart import apart
-from .cage_file import ControlMesh
+from .control_mesh import ControlMesh
 from .depth_rules import CATMULL_CLARK
 from .patched import patched
 from .refine_size import expected, most_triangles

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
+from numpy.typing import ArrayLike
+
 from foveal.base.errors import FovealError
 
-from .depth_rules import CATMULL_CLARK, depths_with
+from .depth_rules import CATMULL_CLARK, OF_POLYGONS, depths_with, is_chosen, refuse_of_polygons
 
 if TYPE_CHECKING:
     from foveal.refine import Criteria
@@ -42,6 +44,14 @@ class RefineOptions(TypedDict, total=False):
     sharp_edges : float
         Keep the edges sharp at which the control mesh bends by more than this angle, in radians, from 0 to
         pi; for √3. A `.fov` has them, a scene does not say.
+    pair_triangles : bool
+        Join triangles in pairs to quadrangles before all else, for catmull-clark: half the patches, on
+        another surface. Kept in a `.fov` as polygons.
+    placements : (k, 4, 4) float
+        Where the control mesh stands, for catmull-clark: matrices from its own space, the last row 0 0 0 1.
+        Each placement has its own depths. Kept in a `.fov`.
+    prim : str
+        Of a USD file with several meshes the path of one, such as "/town/house", for catmull-clark.
     """
 
     scheme: str | None
@@ -51,6 +61,9 @@ class RefineOptions(TypedDict, total=False):
     budget: int | None
     rate: float | None
     sharp_edges: float | None
+    pair_triangles: bool | None
+    prim: str | None
+    placements: ArrayLike | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +118,7 @@ class Refinement:
             new["depths"] = depths_with(self.depths, options)
             new.pop("criteria", None)
             return replace(self, **{**new, "positions": "limit"})
-        if "depths" in new:
-            raise FovealError(f"{scheme} has no rules of depth. Choose catmull-clark, or leave them out.")
+        refuse_of_polygons(scheme, options)
         if isinstance(new.get("criteria"), Mapping):
             new["criteria"] = _changed(self.criteria, new["criteria"])
         return replace(self, **new)
@@ -136,9 +148,10 @@ def chosen(options: RefineOptions, /) -> Refinement | None:
         from foveal.refine import Criteria
 
         return Refinement(cast(Any, scheme), Criteria()).chosen(options)
-    named = [name for name in RefineOptions.__annotations__ if options.get(name) is not None]
+    named = [name for name in RefineOptions.__annotations__ if is_chosen(options, name)]
     if named:
-        raise FovealError(f"{' and '.join(named)} tell how to refine; choose a scheme, such as sqrt3, too.")
+        fit = CATMULL_CLARK if set(named) & OF_POLYGONS.keys() else "sqrt3"
+        raise FovealError(f"{' and '.join(named)} tell how to refine; choose a scheme, such as {fit}, too.")
     return None
 
 

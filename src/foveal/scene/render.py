@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, read_json, refuse_unwritable
 from foveal.base.progress import SILENT, Progress
+from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
-from .build import BuildOptions, Source, checked, up_of
+from .build import BuildOptions, up_of
 from .cage_file import read_cage
 from .prepare import load
 from .scene import Layer, Scene
+from .source import Source, checked, triangles_of
 
 if TYPE_CHECKING:
     from foveal.raster import Picture
@@ -46,9 +48,9 @@ def render(
 
     Parameters
     ----------
-    source : path, TriMesh or Scene
+    source : path, TriMesh, PolyMesh or Scene
         What to draw. A mesh in a file is built into the user's cache first; one in memory is drawn as it
-        is, every triangle.
+        is, every triangle, but with a `scheme`.
     output : path, optional
         A PNG to write.
     camera : Camera or path, optional
@@ -95,9 +97,9 @@ def render(
         camera = camera.resized(*size)
     if not isinstance(source, Scene):
         source = checked(source)
-    if isinstance(source, TriMesh):
+    if isinstance(source, (TriMesh, PolyMesh)) and options.get("scheme") is None:
         eye = camera or home([source.positions], up=up_of(options), size=size or _SIZE)
-        picture = _opaque(source, eye, None, progress)
+        picture = _opaque(triangles_of(source), eye, None, progress)
     else:
         scene = load(source, progress=progress, **options)
         eye = camera or frame(scene, size=size or _SIZE)

@@ -8,8 +8,9 @@ from typing import Unpack
 from foveal.base.files import PathLike
 from foveal.base.progress import SILENT, Progress
 from foveal.scene import Scene
-from foveal.scene.build import BuildOptions, Source
+from foveal.scene.build import BuildOptions
 from foveal.scene.prepare import load
+from foveal.scene.source import Source
 from foveal.scene.viewer_files import viewer_files
 
 from .run import Running, can_open_browser, refuse_address, start
@@ -34,7 +35,7 @@ def view(
 
     Parameters
     ----------
-    source : path, TriMesh or Scene
+    source : path, TriMesh, PolyMesh or Scene
         What to show; a mesh is built into the user's cache first.
     host, port
         Where to serve; by default on this machine alone, from port 8000 on.

@@ -11,7 +11,7 @@ from foveal.scene.depth_rules import CATMULL_CLARK
 
 if TYPE_CHECKING:
     from foveal.refine.dialogue import Dialogue
-    from foveal.scene.cage_file import ControlMesh
+    from foveal.scene.control_mesh import ControlMesh
 
 __all__ = ["begun", "warm"]
 
@@ -62,7 +62,7 @@ def begun(cage: "ControlMesh", scheme: str, name: str, /) -> "Dialogue":
     if scheme == CATMULL_CLARK:
         from foveal.refine.patch_session import PatchSession
 
-        return PatchSession(cage.surface(), name=name)
+        return PatchSession(cage.in_place(), name=name)
     from foveal.refine.session import Session
 
     return Session(cage.mesh, scheme=cast(Any, scheme), sharp=cage.sharp, name=name)

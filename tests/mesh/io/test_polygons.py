@@ -61,8 +61,16 @@ def test_boundaries_have_the_numbers_of_opensubdiv(number, boundary, tmp_path):
 
 
 def test_other_tags_are_passed_by(tmp_path):
-    text = HOUSE + "t creasemethod 0/0/1 chaikin\nt hole 1/0/0 1\nt vertexedit 1/3/2 x\nt\nt \n"
+    text = HOUSE + "t creasemethod 0/0/1 chaikin\nt vertexedit 1/3/2 x\nt\nt \n"
     assert_same(read(tmp_path, text), read(tmp_path, HOUSE))
+
+
+def test_holes(tmp_path):
+    assert read(tmp_path, HOUSE + "t hole 1/0/0 1\n").holes.tolist() == [1]
+    with pytest.raises(FovealError, match="face 2 is to be a hole, but faces go from 0 to 1"):
+        read(tmp_path, HOUSE + "t hole 2/0/0 0 2\n")
+    with pytest.raises(FovealError, match="all its faces are holes"):
+        read(tmp_path, HOUSE + "t hole 1/0/0 0\nt hole 1/0/0 1\n")
 
 
 def test_texture_coordinates_with_seams_are_left_out(tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from foveal.base.errors import FovealError
 from foveal.mesh import read_polygons
+from foveal.mesh.io.usd import meshes_of
 from foveal.mesh.poly_shapes import quad_grid
 
 pytest.importorskip("pxr", reason="reading USD needs usd-core")
@@ -67,6 +68,21 @@ def test_an_animation_is_read_at_its_first_frame(tmp_path):
     moved = points.replace("(0, 0, 0)", "(0, 0, -1)")
     text = HOUSE.replace(f"points = {points}", f"points.timeSamples = {{ 3: {points}, 1: {moved} }}", 1)
     assert read(tmp_path, text).positions[0].tolist() == [0, 0, -1]
+
+
+def test_holes(tmp_path):
+    assert read(tmp_path, house("int[] holeIndices = [1]")).holes.tolist() == [1]
+    assert read(tmp_path, HOUSE).holes.tolist() == []
+    with pytest.raises(FovealError, match="face 2 is to be a hole, but faces go from 0 to 1"):
+        read(tmp_path, house("int[] holeIndices = [2]"))
+
+
+def test_all_meshes_are_named(tmp_path):
+    with pytest.raises(
+        FovealError, match=r'no Mesh "/town" in it\. Choose one by --prim: /town/house, /town/shed\.'
+    ):
+        read(tmp_path, HOUSE, prim="/town")
+    assert meshes_of(tmp_path / "town.usda") == ["/town/house", "/town/shed"]
 
 
 def test_tags(tmp_path):

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import trimesh
 
 import corpus
 from foveal.base.errors import FovealError
@@ -56,6 +57,18 @@ def test_glb_gives_back_what_was_written(name, tmp_path):
     rounding = np.abs(mesh.positions).max() * 2.0**-50
     np.testing.assert_allclose(back.positions, mesh.positions, rtol=0, atol=size * 2.0**-24 + rounding)
     assert_same_attributes(mesh, back, 1e-6)
+
+
+def test_texture_coordinates_are_written(tmp_path):
+    land = terrain(4)
+    uvs = np.random.default_rng(2).uniform(-1, 2, (len(land.positions), 2)).astype(np.float32)
+    mesh = TriMesh(land.positions, land.faces, land.normals, None, uvs)
+    for suffix, write in ((".ply", write_ply), (".glb", write_glb)):
+        write(mesh, path := tmp_path / f"mesh{suffix}")
+        other = trimesh.load(path, process=False)
+        other = other if suffix == ".ply" else other.geometry.popitem()[1]
+        np.testing.assert_allclose(other.visual.uv, uvs, atol=2.0**-22)
+        np.testing.assert_array_equal(read_mesh(path).faces, mesh.faces)
 
 
 def test_every_level_of_every_channel_survives_the_way_to_linear_light(tmp_path):

@@ -48,6 +48,7 @@ export class App {
   );
   #lostStrip: HTMLElement | undefined;
   #frames = 0;
+  #hasColours = false;
   #firstPicture: (() => void) | undefined;
   #noPicture: ((problem: Problem) => void) | undefined;
   /** Settles with the first picture; fails if there can be none. */
@@ -265,6 +266,9 @@ export class App {
     this.#frames++;
     const { stage } = this;
     if (stage.moments.firstPicture !== undefined) this.#firstPicture?.();
+    const hasColours = stage.layers.some((layer) => layer.hasColours);
+    if (hasColours !== this.#hasColours) this.#toolbar.update(); // a refinement tells with its first message
+    this.#hasColours = hasColours;
     this.#status.update(figuresOf(stage, this.#streamer, this.#refined));
     const progress = byId("progress");
     if (stage.layers.length) progress.hidden = stage.isIdle;

@@ -4,6 +4,8 @@ export interface Slots {
   readonly positions: readonly (readonly [number, number, number])[];
   readonly starts?: readonly (readonly [number, number, number])[];
   readonly tags?: readonly number[];
+  /** Four bytes a vertex. */
+  readonly colours?: readonly (readonly [number, number, number, number])[];
 }
 
 export interface Parts {
@@ -41,8 +43,8 @@ export function messageOf(parts: Parts): ArrayBuffer {
   return out;
 }
 
-/** The four arrays as bytes. */
-export function arraysOf({ faces, positions, starts, tags }: Slots): Uint8Array[] {
+/** The arrays as bytes; of colours only if there are any. */
+export function arraysOf({ faces, positions, starts, tags, colours }: Slots): Uint8Array[] {
   const padded = new Uint8Array(4 * Math.ceil(faces.length / 4));
   padded.set(tags ?? faces.map(() => 0));
   return [
@@ -50,6 +52,7 @@ export function arraysOf({ faces, positions, starts, tags }: Slots): Uint8Array[
     bytesOf(new Float32Array(positions.flat())),
     bytesOf(new Float32Array((starts ?? positions).flat())),
     padded,
+    ...(colours ? [new Uint8Array(colours.flat())] : []),
   ];
 }
 

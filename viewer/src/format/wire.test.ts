@@ -1,7 +1,15 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { COLOUR_SHIFT, Gap, LEVEL_MASK, parseMessage, SlotBuffers } from "./wire";
-import { arraysOf, freshMessage, messageOf, nextMessage, SPLIT, TETRAHEDRON } from "./wire.fixture";
+import {
+  arraysOf,
+  freshMessage,
+  messageOf,
+  nextMessage,
+  type Slots,
+  SPLIT,
+  TETRAHEDRON,
+} from "./wire.fixture";
 
 /** The arrays of the slots in use, as bytes. */
 function bytesOf(slots: SlotBuffers): Uint8Array[] {
@@ -13,8 +21,13 @@ function bytesOf(slots: SlotBuffers): Uint8Array[] {
     part(slots.positions, 12 * vertexCount),
     part(slots.starts, 12 * vertexCount),
     part(slots.tags, 4 * Math.ceil(faceCount / 4)),
+    ...(slots.hasColours ? [part(slots.colours, 4 * vertexCount)] : []),
   ];
 }
+
+const RED = [255, 0, 0, 255] as const;
+const COLOURED: Slots = { ...SPLIT, colours: SPLIT.positions.map((_, v) => [9 * v, 8, 7, 255] as const) };
+const COLOURED_TETRAHEDRON: Slots = { ...TETRAHEDRON, colours: COLOURED.colours!.slice(0, 4) };
 
 const GOLDEN = new URL("../../../spec/golden/", import.meta.url);
 
@@ -26,6 +39,7 @@ interface GoldenMessage {
   readonly starts: number[][];
   readonly levels: number[];
   readonly colours: number[];
+  readonly vertex_colours?: number[][];
 }
 
 describe("the golden session", () => {
@@ -36,7 +50,7 @@ describe("the golden session", () => {
 
   it("gives the arrays that it says, message by message", () => {
     const slots = new SlotBuffers();
-    for (const { file, head, faces, positions, starts, levels, colours } of messages) {
+    for (const { file, head, faces, positions, starts, levels, colours, vertex_colours } of messages) {
       const message = parseMessage(dataOf(file));
       const { sequence, base, is_settled, triangles, milliseconds, threshold } = head;
       expect(message).toMatchObject({
@@ -49,11 +63,14 @@ describe("the golden session", () => {
         milliseconds,
         threshold,
         hasNormals: ((head.flags as number) & 4) !== 0,
+        hasColours: vertex_colours !== undefined,
       });
       slots.apply(message);
       expect([...slots.faces.subarray(0, 3 * slots.faceCount)]).toEqual(faces.flat());
       expect([...slots.positions.subarray(0, 3 * slots.vertexCount)]).toEqual(positions.flat());
       expect([...slots.starts.subarray(0, 3 * slots.vertexCount)]).toEqual(starts.flat());
+      const inUse = slots.hasColours ? 4 * slots.vertexCount : 0;
+      expect([...slots.colours.subarray(0, inUse)]).toEqual((vertex_colours ?? []).flat());
       const tags = [...slots.tags.subarray(0, slots.faceCount)];
       expect(tags.map((tag) => tag & LEVEL_MASK)).toEqual(levels);
       expect(tags.map((tag) => tag >> COLOUR_SHIFT)).toEqual(colours);
@@ -107,7 +124,23 @@ describe("a live session's messages", () => {
     expect(slots.hasNormals).toBe(true);
     slots.apply(parseMessage(freshMessage(SPLIT, 3)));
     expect(slots.hasNormals).toBe(false);
-    expect(() => parseMessage(freshMessage(SPLIT, 1, { flags: 8 }))).toThrow(/its flags/);
+    expect(() => parseMessage(freshMessage(SPLIT, 1, { flags: 16 }))).toThrow(/its flags/);
+  });
+
+  it("have colours where they say so, which only a fresh message may change", () => {
+    const slots = new SlotBuffers();
+    slots.apply(parseMessage(freshMessage(COLOURED, 1, { flags: 15 })));
+    expect(bytesOf(slots)).toEqual(arraysOf(COLOURED));
+    const next = { ...COLOURED, colours: COLOURED.colours!.map((c, v) => (v === 2 ? RED : c)) };
+    const changes = slots.apply(parseMessage(nextMessage(COLOURED, next, 2, { flags: 15 })));
+    expect([[...changes.born], [...changes.moved], [...changes.faces]]).toEqual([[], [2], []]);
+    expect(bytesOf(slots)).toEqual(arraysOf(next));
+    expect(() => slots.apply(parseMessage(nextMessage(SPLIT, SPLIT, 3, { flags: 7 })))).toThrow(Gap);
+    expect(() => parseMessage(freshMessage(COLOURED, 3, { flags: 7 }))).toThrow(/its ranges/);
+    slots.apply(parseMessage(freshMessage(SPLIT, 3, { flags: 7 })));
+    expect(slots.colours.length).toBe(0);
+    slots.apply(parseMessage(freshMessage(COLOURED, 4, { flags: 15 })));
+    expect(bytesOf(slots)).toEqual(arraysOf(COLOURED));
   });
 
   it("tell faces of which only the level changed", () => {
@@ -146,7 +179,7 @@ describe("a live session's messages", () => {
   });
 
   it("are refused with a sentence where a prefix is all that came", () => {
-    const whole = freshMessage(SPLIT);
+    const whole = freshMessage(COLOURED, 1, { flags: 15 });
     for (let length = 0; length < whole.byteLength; length++) {
       expect(() => parseMessage(whole.slice(0, length))).toThrow(/cannot be read/);
     }
@@ -155,13 +188,16 @@ describe("a live session's messages", () => {
     expect(() => parseMessage(longer.buffer)).toThrow(/cannot be read/);
   });
 
-  it("are refused or harmless whatever bit is flipped", () => {
-    const message = nextMessage(TETRAHEDRON, SPLIT, 2);
+  it.each([
+    [TETRAHEDRON, SPLIT, 1],
+    [COLOURED_TETRAHEDRON, COLOURED, 15],
+  ])("are refused or harmless whatever bit is flipped", (from, to, flags) => {
+    const message = nextMessage(from, to, 2, { flags });
     for (let bit = 0; bit < 8 * message.byteLength; bit++) {
       const bytes = new Uint8Array(message.slice(0));
       bytes[bit >> 3]! ^= 1 << (bit & 7);
       const slots = new SlotBuffers();
-      slots.apply(parseMessage(freshMessage(TETRAHEDRON)));
+      slots.apply(parseMessage(freshMessage(from, 1, { flags })));
       try {
         slots.apply(parseMessage(bytes.buffer));
       } catch (error) {

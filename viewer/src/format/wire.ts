@@ -16,14 +16,16 @@ const RANGE_BYTES = 12;
 const SETTLED = 1;
 const LIMITS = 2;
 const NORMALS = 4;
+const COLOURS = 8;
 /** Slots at most: faces and tags of so many take 110 MB, and no page draws more. */
 const MAX_SLOTS = 1 << 23;
-const ARRAYS = 4;
+const ARRAYS = 5;
 
 /** Numbers of the arrays on the wire. */
 const FACES = 0;
 const POSITIONS = 1;
 const STARTS = 2;
+const TAGS = 3;
 
 export const LEVEL_MASK = 31;
 export const COLOUR_SHIFT = 5;
@@ -42,6 +44,8 @@ export interface WireMessage {
   readonly isSettled: boolean;
   /** The third array is of normals, and nothing is to be blended. */
   readonly hasNormals: boolean;
+  /** The fifth array is there. */
+  readonly hasColours: boolean;
   readonly faces: number;
   readonly vertices: number;
   /** Triangles in use. */
@@ -50,7 +54,7 @@ export interface WireMessage {
   readonly milliseconds: number;
   /** By how much edges wanted were multiplied to keep budget and rate, 1 or more. */
   readonly threshold: number;
-  /** For each of the four arrays its ranges, rising. */
+  /** For each array its ranges, rising. */
   readonly ranges: readonly (readonly WireRange[])[];
 }
 
@@ -60,7 +64,7 @@ export interface SlotChanges {
   readonly isFresh: boolean;
   /** Vertices that were born. */
   readonly born: Uint32Array;
-  /** Vertices that were there and are elsewhere now. */
+  /** Vertices that were there and are elsewhere now, or have another colour. */
   readonly moved: Uint32Array;
   /** Faces with other corners or another tag. */
   readonly faces: Uint32Array;
@@ -83,21 +87,23 @@ export function parseMessage(data: ArrayBuffer): WireMessage {
     base: base!,
     isSettled: (flags! & SETTLED) !== 0,
     hasNormals: (flags! & NORMALS) !== 0,
+    hasColours: (flags! & COLOURS) !== 0,
     faces: faces!,
     vertices: vertices!,
     triangles: triangles!,
     milliseconds,
     threshold,
-    ranges: rangesOf(data, words, ranges!, sizesOf(faces!, vertices!)),
+    ranges: rangesOf(data, words, ranges!, sizesOf(faces!, vertices!, (flags! & COLOURS) !== 0)),
   };
-  if ((flags! & ~(SETTLED | LIMITS | NORMALS)) !== 0) throw damaged("its flags");
+  if ((flags! & ~(SETTLED | LIMITS | NORMALS | COLOURS)) !== 0) throw damaged("its flags");
   checkValues(message);
   return message;
 }
 
-/** Bytes of the four arrays. */
-function sizesOf(faces: number, vertices: number): number[] {
-  return [12 * faces, 12 * vertices, 12 * vertices, 4 * Math.ceil(faces / 4)];
+/** Bytes of the arrays. */
+function sizesOf(faces: number, vertices: number, hasColours: boolean): number[] {
+  const places = 12 * vertices;
+  return [12 * faces, places, places, 4 * Math.ceil(faces / 4), hasColours ? 4 * vertices : 0];
 }
 
 function rangesOf(data: ArrayBuffer, words: Uint32Array, count: number, sizes: number[]): WireRange[][] {
@@ -142,7 +148,7 @@ function damaged(what: string): Problem {
 /** A message that does not build on what is here: all is to be asked for. */
 export class Gap extends Error {}
 
-/** The four arrays as the server has them; only the first `faces` and `vertices` slots of each count. */
+/** The arrays as the server has them; only the first `faces` and `vertices` slots of each count. */
 export class SlotBuffers {
   /** Of the last message applied, 0 before the first. */
   sequence = 0;
@@ -155,6 +161,9 @@ export class SlotBuffers {
   starts = new Float32Array(0);
   hasNormals = false;
   tags = new Uint8Array(0);
+  hasColours = false;
+  /** Red, green, blue and 255 a vertex; empty where there are none. */
+  colours = NO_COLOURS;
 
   /** Forget all; the next message must begin from nothing. */
   reset(): void {
@@ -171,11 +180,12 @@ export class SlotBuffers {
    */
   apply(message: WireMessage): SlotChanges {
     const isFresh = message.base === 0;
-    const isOther = message.hasNormals !== this.hasNormals;
+    const isOther = message.hasNormals !== this.hasNormals || message.hasColours !== this.hasColours;
     const hasShrunk = isOther || message.faces < this.faceCount || message.vertices < this.vertexCount;
     if (!isFresh && (message.base !== this.sequence || hasShrunk)) throw new Gap();
     if (isFresh) this.reset();
     this.hasNormals = message.hasNormals;
+    this.hasColours = message.hasColours;
     this.#grow(message);
     const changes = isFresh ? NOTHING : this.#compare(message);
     this.#arrays.forEach((array, i) => {
@@ -188,12 +198,12 @@ export class SlotBuffers {
     return changes;
   }
 
-  get #arrays(): [Uint32Array, Float32Array, Float32Array, Uint8Array] {
-    return [this.faces, this.positions, this.starts, this.tags];
+  get #arrays(): [Uint32Array, Float32Array, Float32Array, Uint8Array, Uint8Array] {
+    return [this.faces, this.positions, this.starts, this.tags, this.colours];
   }
 
   /** Room for twice what was, where there is too little: counts grow a little with many messages. */
-  #grow({ faces, vertices }: WireMessage): void {
+  #grow({ faces, vertices, hasColours }: WireMessage): void {
     if (12 * faces > this.faces.byteLength) {
       const room = 4 * Math.ceil(Math.max(faces, this.faces.length / 1.5) / 4);
       this.faces = copied(this.faces, new Uint32Array(3 * room));
@@ -204,23 +214,35 @@ export class SlotBuffers {
       this.positions = copied(this.positions, new Float32Array(room));
       this.starts = copied(this.starts, new Float32Array(room));
     }
+    if (!hasColours) this.colours = NO_COLOURS;
+    else if (3 * this.colours.length < 4 * this.positions.length)
+      this.colours = copied(this.colours, new Uint8Array((4 * this.positions.length) / 3));
   }
 
   /** Find what the message will change, before it does. */
   #compare({ ranges, faces, vertices }: WireMessage): SlotChanges {
     const changed = this.#arrays.map((array, i) => {
       const now = new Uint32Array(array.buffer);
-      const isChanged = new Uint8Array(i === FACES || i === ARRAYS - 1 ? faces : vertices);
-      for (const range of ranges[i]!) markChanged(now, range, i === ARRAYS - 1 ? null : 3, isChanged);
+      const isChanged = new Uint8Array(i === FACES || i === TAGS ? faces : vertices);
+      for (const range of ranges[i]!) markChanged(now, range, WORDS[i]!, isChanged);
       return isChanged;
     });
-    const [corners, places, births, tags] = changed as [Uint8Array, Uint8Array, Uint8Array, Uint8Array];
+    const [corners, places, births, tags, colours] = changed as [
+      Uint8Array,
+      Uint8Array,
+      Uint8Array,
+      Uint8Array,
+      Uint8Array,
+    ];
     for (let f = 0; f < faces; f++) corners[f]! |= tags[f]!;
-    for (let v = 0; v < vertices; v++) places[v]! &= 1 - births[v]!;
+    for (let v = 0; v < vertices; v++) places[v] = (places[v]! | colours[v]!) & (1 - births[v]!);
     return { isFresh: false, born: marked(births), moved: marked(places), faces: marked(corners) };
   }
 }
 
+/** Of a slot of each array; of tags none, but bytes. */
+const WORDS = [3, 3, 3, null, 1] as const;
+const NO_COLOURS = new Uint8Array(0);
 const NONE = new Uint32Array(0);
 const NOTHING: SlotChanges = { isFresh: true, born: NONE, moved: NONE, faces: NONE };
 

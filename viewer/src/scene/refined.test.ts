@@ -230,15 +230,21 @@ describe("slots on the GPU", () => {
       const slots = new SlotBuffers();
       const mesh = new SlotMesh(slots, makeRefinedMaterials());
       const upload = new Upload();
-      let now = randomSlots(next, 60, 40);
-      mesh.update(slots.apply(parseMessage(freshMessage(now))), 0);
+      const hasColours = seed % 2 === 0;
+      const flags = hasColours ? 15 : 1;
+      const coloured = (there: Slots): Slots =>
+        hasColours ? { ...there, colours: there.positions.map(() => [byte(), byte(), byte(), 255]) } : there;
+      const byte = (): number => Math.floor(256 * next());
+      let now = coloured(randomSlots(next, 60, 40));
+      mesh.update(slots.apply(parseMessage(freshMessage(now, 1, { flags }))), 0);
       for (let n = 2; n < 40; n++) {
         const before = now;
-        now = changed(next, before);
+        now = coloured(changed(next, before));
         mesh.show(n % 7 < 3, n % 5 < 3);
-        mesh.update(slots.apply(parseMessage(nextMessage(before, now, n))), n);
+        mesh.update(slots.apply(parseMessage(nextMessage(before, now, n, { flags }))), n);
         for (const part of [mesh.surface, mesh.wires, mesh.tagged]) upload.take(part);
         const { surface, tagged } = mesh;
+        expect(surface.geometry.attributes.srgb?.array).toBe(hasColours ? slots.colours : undefined);
         const corners = surface.geometry.index!.array.subarray(0, 3 * slots.faceCount);
         expect(corners).toEqual(slots.faces.subarray(0, 3 * slots.faceCount));
         expect(surface.geometry.drawRange.count).toBe(3 * slots.faceCount);

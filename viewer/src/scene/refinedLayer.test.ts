@@ -1,4 +1,4 @@
-import { type Mesh, PerspectiveCamera, Vector3 } from "three";
+import { type BufferAttribute, type Mesh, PerspectiveCamera, type ShaderMaterial, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { Refinement } from "../format/cage";
 import type { Triple } from "../format/graph";
@@ -164,6 +164,31 @@ describe("a refined layer", () => {
       expect(worn("picture")).toBe(passes.picture);
     }
     expect(tagged.geometry.drawRange.count).toBe(12); // made for the inset
+  });
+
+  it("draws the colours of its vertices where there are any and they are wanted", () => {
+    const { source, layer } = started();
+    const [surface] = layer.group.children as [Mesh];
+    const isColoured = (): unknown => {
+      layer.show(16);
+      return (surface.material as ShaderMaterial).uniforms.hasColours!.value;
+    };
+    source.say(freshMessage(SPLIT));
+    expect([layer.hasColours, isColoured(), surface.geometry.getAttribute("srgb")]).toEqual([
+      false,
+      false,
+      undefined,
+    ]);
+    const colours = SPLIT.positions.map((_, v) => [v, 2 * v, 255 - v, 255] as const);
+    source.say(freshMessage({ ...SPLIT, colours }, 2, { flags: 15 }));
+    expect([layer.hasColours, isColoured()]).toEqual([true, true]);
+    const attribute = surface.geometry.getAttribute("srgb") as BufferAttribute;
+    expect([...attribute.array.subarray(0, 20)]).toEqual(colours.flat());
+    expect([attribute.itemSize, attribute.normalized]).toEqual([4, true]);
+    layer.dress({ ...LOOK, areColoursOn: false });
+    expect(isColoured()).toBe(false);
+    source.say(freshMessage(SPLIT, 3));
+    expect(surface.geometry.getAttribute("srgb")).toBeUndefined();
   });
 
   it("has the picture's faces still after a picture from elsewhere", () => {

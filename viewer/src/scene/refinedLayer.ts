@@ -37,7 +37,6 @@ const WIRE_LINE = 0.7;
 export class RefinedLayer implements Layer {
   readonly name: string;
   readonly group = new Group();
-  readonly hasColours = false;
   readonly hasPatches = false;
   readonly isWholeFile = false;
   readonly errorPx = 0;
@@ -51,6 +50,7 @@ export class RefinedLayer implements Layer {
   /** Seconds that pictures have moved things on. */
   #clock = 0;
   #faceColours: FaceColours = "plain";
+  #areColoursOn = true;
   #isWireframe = false;
   /** The last picture had one from elsewhere in it, which needs the faces apart. */
   #hadInset = false;
@@ -81,6 +81,11 @@ export class RefinedLayer implements Layer {
         options.onChange();
       },
     });
+  }
+
+  /** Known from the first message on. */
+  get hasColours(): boolean {
+    return this.asset.source.slots.hasColours;
   }
 
   get figures(): RefinementFigures {
@@ -128,12 +133,14 @@ export class RefinedLayer implements Layer {
     const { uniforms } = this.#materials;
     uniforms.now.value = this.#clock;
     uniforms.isStill.value = this.isStill;
+    uniforms.hasColours.value = this.hasColours && this.#areColoursOn;
     this.#prepare(this.#hadInset);
     this.#hadInset = false;
     this.wear("picture");
   }
 
-  dress({ faceColours, isWireframe }: Look): void {
+  dress({ faceColours, isWireframe, areColoursOn }: Look): void {
+    this.#areColoursOn = areColoursOn;
     this.#faceColours = faceColours;
     this.#isWireframe = isWireframe;
     this.#materials.surface.polygonOffset = isWireframe;

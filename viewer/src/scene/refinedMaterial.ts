@@ -10,6 +10,7 @@ const VERTEX = /* glsl */ `
 in vec3 from;
 in vec3 fromNormal;
 in float since;
+in vec4 srgb;
 uniform vec3 reference;
 uniform mat4 toEye;
 uniform float now;
@@ -17,6 +18,7 @@ uniform bool isStill;
 invariant gl_Position; // surface and wires are two programs
 out vec3 vNormal;
 out vec3 vPosition;
+out vec3 vSrgb;
 
 void main() {
   float share = isStill ? 1.0 : clamp((now - since) / ${BLEND_SECONDS}, 0.0, 1.0);
@@ -24,6 +26,7 @@ void main() {
   vec4 seen = toEye * vec4(mix(from, position, share) - reference, 1.0);
   vPosition = seen.xyz;
   vNormal = mat3(viewMatrix) * mix(fromNormal, normal, share); // the asset is moved and scaled, not turned
+  vSrgb = srgb.rgb;
   gl_Position = projectionMatrix * seen;
 }
 `;
@@ -31,13 +34,15 @@ void main() {
 const FRAGMENT = /* glsl */ `
 in vec3 vNormal;
 in vec3 vPosition;
+in vec3 vSrgb;
 uniform vec3 plaster;
+uniform bool hasColours;
 out vec4 pixel;
 ${SHADE_GLSL}
 void main() {
   vec3 facing = normalize(cross(dFdx(vPosition), dFdy(vPosition))); // always on the side of the eye
   vec3 normal = length(vNormal) < 1e-3 ? facing : normalize(vNormal);
-  pixel = vec4(shade(plaster, normal, facing), 1.0);
+  pixel = vec4(shade(hasColours ? vSrgb : plaster, normal, facing), 1.0);
 }
 `;
 
@@ -102,6 +107,7 @@ export function makeRefinedUniforms() {
     now: { value: 0 },
     isStill: { value: false },
     plaster: { value: srgb(PLASTER) },
+    hasColours: { value: false },
     palette: { value: LEVELS.map(srgb) },
     triplet: { value: TRIPLET.map(srgb) },
     areLevels: { value: true },

@@ -74,7 +74,9 @@ export class SlotMesh {
     this.#faceCount = slots.faceCount;
     if (changes.isFresh) this.#corners.fill(0).set(slots.faces.subarray(0, 3 * slots.faceCount));
     else for (const f of changes.faces) copyFace(slots.faces, this.#corners, f);
-    if (hasMoreVertices || hasMoreFaces) this.renew();
+    const { srgb } = this.surface.geometry.attributes;
+    const areOtherColours = srgb?.array !== (slots.hasColours ? slots.colours : undefined);
+    if (hasMoreVertices || hasMoreFaces || areOtherColours) this.renew();
     else this.#upload(changes);
     this.surface.geometry.setDrawRange(0, 3 * slots.faceCount);
     this.wires.geometry.setDrawRange(0, 6 * slots.faceCount);
@@ -91,6 +93,7 @@ export class SlotMesh {
     geometry.setAttribute("normal", dynamic(normal, 3));
     geometry.setAttribute("fromNormal", dynamic(fromNormal, 3));
     geometry.setAttribute("since", dynamic(since, 1));
+    if (this.slots.hasColours) geometry.setAttribute("srgb", dynamic(this.slots.colours, 4, true));
     geometry.setIndex(dynamic(this.#corners, 1));
     geometry.setDrawRange(0, 3 * this.#faceCount);
     this.surface.geometry = geometry;
@@ -214,8 +217,12 @@ function touch(attribute: BufferAttribute, runs: readonly Run[], perSlot: number
   attribute.needsUpdate = true;
 }
 
-function dynamic(array: Float32Array | Uint32Array | Uint8Array, itemSize: number): BufferAttribute {
-  return new BufferAttribute(array, itemSize).setUsage(DynamicDrawUsage);
+function dynamic(
+  array: Float32Array | Uint32Array | Uint8Array,
+  itemSize: number,
+  isNormalised = false,
+): BufferAttribute {
+  return new BufferAttribute(array, itemSize, isNormalised).setUsage(DynamicDrawUsage);
 }
 
 function grown(old: Uint32Array, length: number): Uint32Array<ArrayBuffer> {

@@ -23,11 +23,12 @@ _TURNS = {"x": [0.0, 0.0, _HALF, _HALF], "z": [-_HALF, 0.0, 0.0, _HALF]}
 
 
 def write_glb(mesh: TriMesh, path: str | os.PathLike[str], /, *, up: str = "y") -> None:
-    """Write a mesh with its normals and colours; the file appears when it is whole.
+    """Write a mesh with its normals, colours and texture coordinates; the file appears when it is whole.
 
     Positions are float32 relative to the middle of the mesh, which the node's translation (JSON, hence
     float64) puts back, so that UTM coordinates survive. Colours are linear in glTF: sRGB bytes become
-    16-bit linear light, fine enough that all 256 levels stay apart. `up` names the axis of the data
+    16-bit linear light, fine enough that all 256 levels stay apart. Texture coordinates are from the upper
+    left in glTF, so the second becomes 1 - v. `up` names the axis of the data
     that points up; a node turns it to y, the data themselves stay as they are.
 
     Raises
@@ -46,6 +47,8 @@ def write_glb(mesh: TriMesh, path: str | os.PathLike[str], /, *, up: str = "y") 
         light = np.full((len(mesh.colours), 4), 65535, dtype="<u2")  # four, for rows must align to 4 bytes
         light[:, :3] = np.rint(linear_of_srgb(mesh.colours) * 65535)
         attributes["COLOR_0"] = body.add(light, _UINT16, "VEC4", normalised=True)
+    if mesh.uvs is not None:
+        attributes["TEXCOORD_0"] = body.add((mesh.uvs * [1, -1] + [0, 1]).astype("<f4"), _FLOAT, "VEC2")
     kind, width = (_UINT16, "<u2") if len(mesh.positions) <= 65535 else (_UINT32, "<u4")
     indices = body.add(mesh.faces.reshape(-1).astype(width), kind, "SCALAR", target=_INDICES)
     nodes: list[dict[str, Any]] = [{"mesh": 0, "translation": centre.tolist()}]

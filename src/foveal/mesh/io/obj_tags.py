@@ -24,15 +24,16 @@ class ObjTags:
     sharp_corners: dict[int, float] = field(default_factory=dict)
     boundary: Boundary = "edge_only"
     uvs: NDArray[np.float32] | None = None
+    holes: list[int] = field(default_factory=list)
 
     def take(self, text: str) -> None:
         """Heed the rest of a `t` line: a name, how many integers/numbers/words follow, and those.
 
-        Vertices count from 0, other than in `f`. A crease is a pair of vertices, and a line may have several;
-        one sharpness holds for all of a line, or each has its own.
+        Vertices and faces count from 0, other than in `f`. A crease is a pair of vertices, and a line may
+        have several; one sharpness holds for all of a line, or each has its own.
         """
         name, *rest = text.split("#", 1)[0].split()
-        if name not in ("crease", "corner", "interpolateboundary"):
+        if name not in ("crease", "corner", "interpolateboundary", "hole"):
             return
         whole, real, _ = (int(count) for count in rest[0].split("/"))
         indices = [_index(word) for word in rest[1 : 1 + whole]]
@@ -41,6 +42,8 @@ class ObjTags:
             raise ValueError
         if name == "interpolateboundary":
             self.boundary = BOUNDARIES[indices[0]]
+        elif name == "hole":
+            self.holes += indices
         elif name == "crease":
             sharpness *= whole // 2 if real == 1 else 1
             ends = zip(indices[0::2], indices[1::2], strict=True)

@@ -17,7 +17,7 @@ _SENSIBLE = 2.0**-21
 
 
 def write_ply(mesh: TriMesh, path: str | os.PathLike[str], /, *, comment: str = "") -> None:
-    """Write a mesh with its normals and colours; the file appears when it is whole.
+    """Write a mesh with normals, colours and texture coordinates (s, t); the file appears when it is whole.
 
     Positions are written as float32, or as float64 where float32 would move a vertex by more than
     2^-21 of the mesh's largest extent, as it would UTM coordinates.
@@ -39,6 +39,9 @@ def write_ply(mesh: TriMesh, path: str | os.PathLike[str], /, *, comment: str = 
     if mesh.colours is not None:
         vertex += [(n, "u1") for n in ("red", "green", "blue")]
         lines += [f"property uchar {n}" for n in ("red", "green", "blue")]
+    if mesh.uvs is not None:
+        vertex += [(n, "<f4") for n in "st"]
+        lines += [f"property float {n}" for n in "st"]
     lines += [f"element face {len(mesh.faces)}", "property list uchar int vertex_indices", "end_header", ""]
     with whole_file(path) as file:
         file.write("\n".join(lines).encode("utf-8"))
@@ -64,6 +67,8 @@ def _vertex_rows(mesh: TriMesh, part: slice, layout: np.dtype[np.void]) -> np.nd
     if mesh.colours is not None:
         for k, name in enumerate(("red", "green", "blue")):
             rows[name] = mesh.colours[part, k]
+    if mesh.uvs is not None:
+        rows["s"], rows["t"] = mesh.uvs[part].T
     return rows
 
 

@@ -13,10 +13,9 @@ from .blocks import MeshSource, VertexBlock
 from .detect import detect
 from .obj_tags import read_obj_tags
 from .source import mesh_of, open_source
+from .usd import SUFFIXES, read_usd
 
 __all__ = ["read_polygons"]
-
-_USD = {".usd", ".usda", ".usdc", ".usdz"}
 
 
 def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -> PolyMesh:
@@ -25,9 +24,9 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
     Vertices and faces are those of the file, in its order; faces of fewer than three corners are left out.
     Of files that hold triangles alone (STL, GLB), vertices at exactly the same position are merged.
 
-    Of OBJ the tags that OpenSubdiv's shapes write are kept: `t crease`, `t corner` and
+    Of OBJ the tags that OpenSubdiv's shapes write are kept: `t crease`, `t corner`, `t hole` and
     `t interpolateboundary` (0 none, 1 edge and corner, 2 edge only); others are passed by, which are
-    `hole`, `creasemethod`, `smoothtriangles` and edits. Texture coordinates are kept of an OBJ in which each
+    `creasemethod`, `smoothtriangles` and edits. Texture coordinates are kept of an OBJ in which each
     vertex has one, that is, without seams; with seams they are left out, since a vertex is one vertex here.
 
     Parameters
@@ -43,9 +42,7 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
         If the file cannot be read, or is no surface: see `PolyMesh.checked`.
     """
     path = Path(path)
-    if path.suffix.lower() in _USD:
-        from .usd import read_usd
-
+    if path.suffix.lower() in SUFFIXES:
         return read_usd(path, prim=prim)
     if prim is not None:
         raise ValueError(f"only a USD file has prims, got {path.name}")
@@ -61,7 +58,7 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
     tags = read_obj_tags(path, len(positions))
     parts: list[Any] = [positions, starts, corners, list(tags.creases), list(tags.creases.values())]
     parts += [list(tags.sharp_corners), list(tags.sharp_corners.values())]
-    parts += [tags.boundary, colours, tags.uvs]
+    parts += [tags.boundary, colours, tags.uvs, tags.holes]
     return PolyMesh(*parts).checked(path.name)
 
 

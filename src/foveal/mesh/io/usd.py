@@ -11,7 +11,10 @@ from foveal.base.errors import FovealError
 from ..colours import srgb_of_linear
 from ..polymesh import Boundary, PolyMesh
 
-__all__ = ["read_usd"]
+__all__ = ["SUFFIXES", "meshes_of", "read_usd"]
+
+SUFFIXES = {".usd", ".usda", ".usdc", ".usdz"}
+_NAMED = 10  # of the meshes of a file, in an error
 
 _BOUNDARIES: dict[str, Boundary] = {
     "none": "none",
@@ -24,8 +27,8 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
     """Read a Mesh of a USD file, of its first frame, in its own axes, without the transforms above it.
 
     Kept are points, faces (turned round where the orientation is left-handed), creases, corners,
-    interpolateBoundary, and of the primvars displayColor and st where they have one value a vertex (or, as
-    a colour, one for all); holes are no holes here. It needs the extra `usd`.
+    interpolateBoundary, holes, and of the primvars displayColor and st where they have one value a vertex
+    (or, as a colour, one for all). It needs the extra `usd`.
 
     Parameters
     ----------
@@ -38,6 +41,36 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
         If usd-core is missing, the file cannot be read, there is no such mesh, its subdivision scheme is not
         Catmull-Clark, its arrays do not fit together, or it is no surface: see `PolyMesh.checked`.
     """
+    stage, geometry = _opened(path)
+    mesh = _found(stage, geometry, prim, path.name)
+    name = f"{path.name}: {mesh.GetPath()}"
+    scheme = mesh.GetSubdivisionSchemeAttr().Get()
+    if scheme != "catmullClark":
+        raise FovealError(
+            f'{name}: its subdivisionScheme is "{scheme}", and only "catmullClark" is read. Set it to that.'
+        )
+    points, primvars = _values(mesh.GetPointsAttr()), geometry.PrimvarsAPI(mesh)
+    parts: list[Any] = [points, *_faces(mesh, name), *_creases(mesh, name)]
+    parts += [_values(mesh.GetCornerIndicesAttr()), _values(mesh.GetCornerSharpnessesAttr())]
+    parts += [_boundary(mesh, name), _colours(primvars, len(points))]
+    parts += [_of_vertices(primvars.GetPrimvar("st"), len(points)), _values(mesh.GetHoleIndicesAttr())]
+    return PolyMesh(*parts).checked(name)
+
+
+def meshes_of(path: Path, /) -> list[str]:
+    """The paths of all meshes in a USD file, in its order.
+
+    Raises
+    ------
+    FovealError
+        If usd-core is missing, or the file cannot be read.
+    """
+    stage, geometry = _opened(path)
+    return [str(mesh.GetPath()) for mesh in stage.Traverse() if mesh.IsA(geometry.Mesh)]
+
+
+def _opened(path: Path) -> tuple[Any, Any]:
+    """The stage, and the library that knows meshes."""
     try:
         from pxr import Tf, Usd, UsdGeom
     except ImportError:
@@ -52,27 +85,19 @@ def read_usd(path: Path, /, *, prim: str | None = None) -> PolyMesh:
         raise FovealError(
             f"{path.name}: it cannot be read as USD. The file is damaged; export it again."
         ) from None
-    mesh = _found(stage, UsdGeom, prim, path.name)
-    name = f"{path.name}: {mesh.GetPath()}"
-    scheme = mesh.GetSubdivisionSchemeAttr().Get()
-    if scheme != "catmullClark":
-        raise FovealError(
-            f'{name}: its subdivisionScheme is "{scheme}", and only "catmullClark" is read. Set it to that.'
-        )
-    points, primvars = _values(mesh.GetPointsAttr()), UsdGeom.PrimvarsAPI(mesh)
-    parts: list[Any] = [points, *_faces(mesh, name), *_creases(mesh, name)]
-    parts += [_values(mesh.GetCornerIndicesAttr()), _values(mesh.GetCornerSharpnessesAttr())]
-    parts += [_boundary(mesh, name), _colours(primvars, len(points))]
-    parts += [_of_vertices(primvars.GetPrimvar("st"), len(points))]
-    return PolyMesh(*parts).checked(name)
+    return stage, UsdGeom
 
 
 def _found(stage: Any, geometry: Any, path: str | None, name: str) -> Any:
-    for found in stage.Traverse():
-        if found.IsA(geometry.Mesh) and path in (None, str(found.GetPath())):
+    there = [found for found in stage.Traverse() if found.IsA(geometry.Mesh)]
+    for found in there:
+        if path in (None, str(found.GetPath())):
             return geometry.Mesh(found)
-    what = "there is no Mesh in it" if path is None else f'there is no Mesh "{path}" in it'
-    raise FovealError(f"{name}: {what}. Choose a file, or the path of a prim, with a mesh.")
+    if not there:
+        raise FovealError(f"{name}: there is no Mesh in it. Choose a file with one.")
+    names = ", ".join(str(found.GetPath()) for found in there[:_NAMED])
+    more = f" and {len(there) - _NAMED} more" if len(there) > _NAMED else ""
+    raise FovealError(f'{name}: there is no Mesh "{path}" in it. Choose one by --prim: {names}{more}.')
 
 
 def _values(attribute: Any) -> NDArray[Any]:
