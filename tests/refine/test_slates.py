@@ -118,6 +118,19 @@ def test_who_copies_what_changed_has_it_all():
         np.testing.assert_array_equal(copies[1][used], arrays.normals[used])
 
 
+def test_several_workers_compute_the_same_bits():
+    rng = np.random.default_rng(4)
+    mesh = PolyMesh.of_triangles(icosphere(3))
+    depths = rng.integers(1, 5, 3 * len(icosphere(3).faces))
+    one, three = Slates(mesh), Slates(mesh, workers=3)
+    for positions in (mesh.positions, wavy(mesh)):
+        done = [surface.show(depths, positions=positions) for surface in (one, three)]
+        assert done[0] == done[1]
+        assert len(one.arrays().positions) > 60_000
+        for a, b in zip(one.arrays()[:6], three.arrays()[:6], strict=True):
+            assert np.array_equal(a, b)
+
+
 def test_only_what_is_near_a_moved_vertex_is_computed_anew():
     mesh = quad_torus(12, 10)
     surface = Slates(mesh)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from foveal.base.errors import FovealError
+from foveal.base.tasks import thread_count
 from foveal.mesh.polymesh import PolyMesh
 from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
@@ -45,6 +46,9 @@ class Slates:
         Join triangles in pairs first, as `paired` does. Half the patches, on another surface.
     dtype : float64 or float32
         Of positions and normals that come out; all is computed in float64.
+    workers : int, optional
+        Threads for points that many patches need at once, such as in a first view; None for as many as there
+        are processors. What comes out is the same.
     name : str
         What errors call the mesh.
 
@@ -73,6 +77,7 @@ class Slates:
         placements: ArrayLike | None = None,
         pair_triangles: bool = False,
         dtype: DTypeLike = np.float64,
+        workers: int | None = 1,
         name: str = "mesh",
     ) -> None:
         polygons = PolyMesh.of_triangles(mesh) if isinstance(mesh, TriMesh) else mesh
@@ -82,7 +87,7 @@ class Slates:
             raise ValueError(f"dtype must be float64 or float32, got {np.dtype(dtype)}")
         self._cage = SlateCage.of(self._mesh)
         self._placements = Placements.of(placements, name=name)
-        self._blocks = Blocks(self._cage, _columns(self._mesh), dtype)
+        self._blocks = Blocks(self._cage, _columns(self._mesh), dtype, workers=thread_count(workers))
         self._views = Views(self._cage, self._blocks)
         self._shown = Shown(self._cage, len(self._placements))
 
@@ -245,7 +250,7 @@ def slates(
     >>> 400 < len(seen.faces) <= 500
     True
     """
-    surface = Slates(mesh)
+    surface = Slates(mesh, workers=None)
     surface.update(camera, depths=depths, budget=budget)
     return surface.mesh()
 

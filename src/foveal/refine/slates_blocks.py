@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from foveal.base.tasks import threads
+
 from ._kernels_slates import tessellate
 from ._kernels_slates_cage import touched
 from ._kernels_slates_rims import rims
@@ -19,6 +21,9 @@ from .slates_cage import SlateCage
 from .slates_work import Rows, Work
 
 __all__ = ["Blocks", "Places"]
+
+#: Rows that are worth to be computed by several workers: 3 ms of one, where threads to begin take 0.2.
+_WORTH_WORKERS = 60_000
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -53,13 +58,14 @@ class Blocks:
         Limits at vertices.
     """
 
-    def __init__(self, cage: SlateCage, columns: list[Floats], dtype: DTypeLike, /) -> None:
+    def __init__(
+        self, cage: SlateCage, columns: list[Floats], dtype: DTypeLike, /, *, workers: int = 1
+    ) -> None:
         self._cage, net = cage, cage.net
         m, normals = len(net.grid), int(net.normal_starts[-1])
         self._columns = columns
         self._arena = Arena(*((3, dtype),) * (len(columns) + 1))
-        self._work = Work.of(net, 0)
-        self._depth = 0
+        self._workers, self._works = workers, [Work.of(net, 0)]
         places, depths = np.zeros(m, np.int64), np.full(m, -1, np.int8)
         self.places = Places(places, depths, np.zeros(4 * m, np.int64), np.full(4 * m, -1, np.int8))
         self.points = [cage.points(column) for column in columns]
@@ -151,26 +157,39 @@ class Blocks:
         self._arena.release(self.places.places[patches], _rows_of(self.places.depths[patches]))
 
     def _compute(self, patches: Ints, sides: Ints) -> None:
+        """Blocks and rims, each where it belongs, so that several workers need not know of each other."""
         here, net = self.places, self._cage.net
         self._written = patches, sides
-        depths, rim_depths = here.depths[patches], here.rim_depths[sides].astype(np.int64)
+        depths, rim_depths = here.depths[patches], here.rim_depths[sides]
         deepest = max(int(depths.max(initial=0)), int(rim_depths.max(initial=0)))
-        if deepest > self._depth:
-            self._work, self._depth = Work.of(net, deepest), deepest
+        parts = self._workers if int(_rows_of(depths).sum()) > _WORTH_WORKERS else 1
+        if deepest > self._works[0].depth or parts > len(self._works):
+            deepest = max(deepest, self._works[0].depth)
+            self._works = [Work.of(net, deepest) for _ in range(max(parts, len(self._works)))]
+        if parts == 1:
+            self._compute_part(self._works[0], patches, sides)
+            return
+        shares = [(patches[i::parts], sides[i::parts]) for i in range(parts)]
+        with threads(parts) as pool:
+            list(pool.map(self._compute_part, self._works, *zip(*shares, strict=True)))
+
+    def _compute_part(self, work: Work, patches: Ints, sides: Ints) -> None:
+        here, net = self.places, self._cage.net
+        depths, rim_depths = here.depths[patches], here.rim_depths[sides].astype(np.int64)
         columns = self._arena.columns
         for i, points in enumerate(self.points):
             out = Rows(columns[i], columns[-1])
             data = points, self.corner_points[i], self.corner_normals
             for depth in np.unique(depths).tolist():
                 chosen = patches[depths == depth]
-                tessellate(net, self._work, *data, chosen, here.places[chosen], depth, out, i == 0)
-            rims(net, self._work, *data, sides, rim_depths, here.rims[sides], out, i == 0)
+                tessellate(net, work, *data, chosen, here.places[chosen], depth, out, i == 0)
+            rims(net, work, *data, sides, rim_depths, here.rims[sides], out, i == 0)
 
     @property
     def bytes_beside(self) -> int:
         """What is kept beside rows of output: slates, limits at vertices, where things are."""
         own = [*self.points, *self.corner_points, self.corner_normals]
-        return sum(array.nbytes for arrays in (self._work, self.places, own) for array in arrays)
+        return sum(array.nbytes for arrays in (*self._works, self.places, own) for array in arrays)
 
 
 def _rows_of(depths: NDArray[np.int8]) -> Ints:

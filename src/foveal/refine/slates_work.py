@@ -1,5 +1,6 @@
 """What one worker computes patches in: two slates with their corners' rings, of a fixed size."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,11 @@ class Work(NamedTuple):
     slates: NDArray[np.float64]
     rings: NDArray[np.float64]
     limits: NDArray[np.float64]
+
+    @property
+    def depth(self) -> int:
+        """Of the deepest patches that it is for."""
+        return (math.isqrt(self.slates.shape[1] // WORDS) - 3).bit_length() - 1
 
     @classmethod
     def of(cls, net: SlateNet, depth: int, /) -> "Work":

@@ -40,7 +40,7 @@ def patched(
     def work() -> tuple[TriMesh, bool]:
         from foveal.refine.slates import Slates
 
-        surface = Slates(cage.surface(), placements=cage.placements, name=name)
+        surface = Slates(cage.surface(), placements=cage.placements, workers=None, name=name)
         done = surface.update(camera, depths=depths_with(refinement.depths, {}), budget=budget)
         return surface.mesh(), done.is_capped
 
