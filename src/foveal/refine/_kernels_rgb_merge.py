@@ -142,14 +142,16 @@ def merge_three(net, v, a, b, f, g, h):
 
 
 @lean
-def merge_topology(net, v):
-    """Take vertex v out of the mesh; it is mergeable."""
+def merge_topology(net, v, known):
+    """Take vertex v, which is mergeable, out of the mesh; up to which word its edge need not be asked."""
     diamond = net.vertices[v].diamond
     a, b = np.int64(diamond[0]), np.int64(diamond[1])
     f = ready_side(net, v, a, b)
     if diamond[3] == NONE:
-        merge_side(net, v, a, b, f)
-        return
-    n = ready_side(net, v, b, a)
-    n = merge_side(net, v, b, a, n)
-    link(net, merge_side(net, v, a, b, f), a, n, b)
+        f = merge_side(net, v, a, b, f)
+    else:
+        n = ready_side(net, v, b, a)
+        n, f = merge_side(net, v, b, a, n), merge_side(net, v, a, b, f)
+        link(net, f, a, n, b)
+        net.faces[n].until[corner_at(net.faces[n], b)] = known
+    net.faces[f].until[corner_at(net.faces[f], a)] = known

@@ -79,8 +79,12 @@ def split_edge(net, f, k):
 
 @lean
 def merge_vertex(net, v):
-    """Take a mergeable vertex out of the mesh; what is known of it is kept."""
-    merge_topology(net, v)
+    """Take a mergeable vertex out of the mesh; what is known of it is kept.
+
+    If its edge met the criteria, it was not asked, as its makers are not wanted.
+    """
+    met = net.vertices[v].flags & MEETS != 0
+    merge_topology(net, v, np.int64(NEVER) if met else np.int64(net.vertices[v].until))
     need(net, v, -1)
     net.vertices[v].flags &= ~(PRESENT | WANTED | MEETS)
     net.vertices[v].around = NONE
