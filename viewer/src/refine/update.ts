@@ -8,7 +8,8 @@
  * - Answers are kept with their slack: `drift` is how far the eye and the frustum moved in all since the beginning,
  *   and a face's and a vertex's `until` say up to which drift an answer holds.
  *
- * The same as `src/foveal/refine/_kernels_sqrt3_update.py`.
+ * The same mesh as `src/foveal/refine/_kernels_sqrt3_update.py` makes, which looks at less: it knows the children of
+ * vertices, keeps answers by two counts and asks no half anew that was a flipped face.
  *
  * @module refine/update
  */
