@@ -23,7 +23,18 @@ from foveal.view.camera import Camera
 
 from . import _kernels_rgb_show as show
 from . import _kernels_rgb_update as kernels
-from ._kernels_rgb_layout import BUTTERFLY, FACES, FREE_CODE, LOOP, MERGES, PRESENT, SPLITS, VERTICES, WAITING
+from ._kernels_rgb_layout import (
+    BUTTERFLY,
+    FACES,
+    FREE_CODE,
+    LAST_IN_FIRST,
+    LOOP,
+    MERGES,
+    PRESENT,
+    SPLITS,
+    VERTICES,
+    WAITING,
+)
 from .cage import Cage
 from .criteria import Criteria, view_of
 from .drift import Drift
@@ -163,6 +174,7 @@ class Rgb:
         self, view: NDArray[np.float64], limits: NDArray[np.float64], most_faces: int, most_splits: int | None
     ) -> None:
         state = self._state
+        state.net.counts[LAST_IN_FIRST] = most_splits is None
         # Of the same view the rest is done: what was forced for edges not split yet is not to be undone.
         if not self._drift.is_still(view, limits):
             if not self._drift.move(view, limits, state.box()):
