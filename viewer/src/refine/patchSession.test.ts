@@ -7,6 +7,7 @@ import { parseMessage, SlotBuffers, type WireMessage } from "../format/wire";
 import type { WireCamera } from "../stream/refinement";
 import type { Request } from "./dialogue";
 import { PatchSession } from "./patchSession";
+import { sessionOf } from "./sessions";
 import { Slates } from "./slates/slates";
 
 const ORIGIN = [0.25, -0.5, 0] as const;
@@ -256,6 +257,13 @@ test("an odd mesh is refused in a sentence", () => {
     expect(make).toThrow("odd.fov");
     expect(make).toThrow(sentence);
   }
+});
+
+test("more patches than a page shows are refused before they are made", () => {
+  const placements = new Float64Array(16 * 40_000);
+  for (let i = 0; i < placements.length; i++) placements[i] = i % 5 === 0 ? 1 : 0;
+  const cage = { scheme: "catmull-clark", mesh: torus(14, 9), placements } as const;
+  expect(() => sessionOf(cage, ORIGIN, "many.fov")).toThrow("many.fov has 5,040,000 patches");
 });
 
 test("a vertex of thousands of faces is refused, and of hundreds not", () => {

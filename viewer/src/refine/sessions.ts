@@ -2,6 +2,7 @@
 import type { CATMULL_CLARK } from "../format/cage";
 import type { Triple } from "../format/graph";
 import type { PolygonMesh } from "../format/polygons";
+import { Problem } from "../format/problem";
 import type { Dialogue } from "./dialogue";
 import { PatchSession } from "./patchSession";
 import { RefinementSession } from "./session";
@@ -18,12 +19,26 @@ export type Cage =
       readonly placements?: Float64Array | undefined;
     };
 
+/** Of two triangles each, at least: what a message holds at most (format/wire.ts). */
+const MOST_PATCHES = 2 ** 22;
+
 /**
  * @param origin - What positions are told relative to.
- * @throws Problem if the mesh is no oriented surface.
+ * @throws Problem if the mesh is no oriented surface, or has more patches than a page shows.
  */
 export function sessionOf(cage: Cage, origin: Triple, name: string): Dialogue {
   if (cage.scheme === "sqrt3") return new RefinementSession(cage.mesh, origin, name);
   const { mesh, placements } = cage;
+  refuseMany(mesh, placements ? placements.length / 16 : 1, name);
   return new PatchSession(placements ? placed(mesh, placements) : mesh, origin, name);
+}
+
+function refuseMany({ starts, corners }: PolygonMesh, times: number, name: string): void {
+  const areQuads = starts.every((start, f) => start === 4 * f);
+  const patches = times * (areQuads ? corners.length / 4 : corners.length);
+  if (patches <= MOST_PATCHES) return;
+  throw new Problem(
+    "damaged",
+    `${name} has ${patches.toLocaleString("en")} patches in all its places, more than a page shows. Build it with fewer placements or faces.`,
+  );
 }
