@@ -1,4 +1,7 @@
-"""Patches with colours in many places: the page draws what the CPU draws, and colours can be left out."""
+"""Patches with colours in many places: the page draws what the CPU draws, and colours can be left out.
+
+Once with foveal's server, which tessellates then, and once of static files, where the page does it by itself.
+"""
 
 from dataclasses import replace
 
@@ -8,9 +11,12 @@ import pytest
 import foveal
 from e2e.page import picture
 from e2e.refined import FRONT, go, press
-from e2e.test_catmull_clark_page import PLAIN, camera_of, near, steps_of
+from e2e.static_server import StaticServer
+from e2e.test_catmull_clark_page import PLAIN, camera_of, near, published, steps_of
 from foveal.mesh.poly_shapes import cube
 from foveal.refine.patch_session import warm_patches
+from foveal.refine.slates import Slates
+from foveal.refine.slates_placements import placed
 from foveal.scene import Scene
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import chosen
@@ -32,11 +38,16 @@ def scene(tmp_path_factory):
     return Scene("Coloured", (Layer("cubes", path, refinement=REFINEMENT),), background="#000000")
 
 
-@pytest.fixture
-def site(scene, viewer_folder):
-    """In the place of the static files of the other tests: foveal's server with a live layer."""
-    with start(scene, port=0, viewer=viewer_folder) as server:
-        yield server
+@pytest.fixture(params=["live", "static"])
+def site(request, scene, viewer_folder, tmp_path):
+    """In the place of the static files of the other tests: a live layer, or what was published."""
+    if request.param == "live":
+        with start(scene, port=0, viewer=viewer_folder) as server:
+            yield server
+        return
+    server = StaticServer(published(scene, tmp_path / "site", viewer_folder))
+    yield server
+    server.close()
 
 
 def hues(pixels):
@@ -55,6 +66,17 @@ def test_colours_and_places_are_drawn_as_by_the_cpu(open_page, scene):
     assert np.abs(seen - expected).max(axis=2)[is_even].max() <= 4
     columns = np.flatnonzero(hues(seen).any(axis=0))
     assert (np.diff(columns) > 10).sum() == 1  # two of them, apart
+
+
+def test_each_place_has_depths_of_its_own_and_is_counted(open_page):
+    page = open_page(PLAIN)
+    assert page.locator("#subtitle").text_content().startswith("12 faces")
+    surface = Slates(placed(MESH, PLACES))
+    for view in (VIEW, {**VIEW, "position": [-1, 1, 3.5]}):
+        shown = go(page, view)
+        wanted = surface.update(camera_of(view), depths=REFINEMENT.depths).triangles
+        # the page's own frame rounds the last digits of the camera, and decides by them now and then
+        assert shown["triangles"] == pytest.approx(wanted, rel=0.02)
 
 
 def test_colours_can_be_left_out_and_levels_go_before(open_page):

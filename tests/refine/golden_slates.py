@@ -20,8 +20,12 @@ from foveal.mesh.polymesh import INFINITELY_SHARP, PolyMesh
 from foveal.mesh.shapes import icosphere
 from foveal.refine import Depths, Slates
 from foveal.refine.depth_words import depths_json
+from foveal.refine.patch_session import PatchSession
+from foveal.refine.slates_placements import placed
 from foveal.refine.slates_rate import FrameRate
+from foveal.refine.wire import request_of
 from refine.cages import creased, valence_two, wavy
+from refine.wire_page import Page, wish
 
 PATH = Path(__file__).parents[2] / "spec" / "golden" / "slates.json"
 SAMPLES = 3  #: rows whose numbers are told, of those in use, for who looks for what differs
@@ -57,6 +61,12 @@ def coloured(mesh):
     )
 
 
+def holed():
+    """Some faces of a closed mesh are holes, so backs may be seen."""
+    mesh = coloured(tagged(prism(6), {(0, 1): 10.0, (6, 7): 1.5}))
+    return replace(mesh, holes=np.array([2, 7], np.int32))
+
+
 TOP = {(4, 5): 10.0, (5, 7): 10.0, (6, 7): 10.0, (4, 6): 10.0}
 HALF = dict(zip(TOP, (0.4, 1.0, 2.5, 1.25), strict=True))
 CAGES = {
@@ -76,8 +86,15 @@ CAGES = {
     **{f"dart_{n}": lambda n=n: pole(n, 10.0) for n in (3, 4, 5, 12)},
     "coloured": lambda: coloured(tagged(prism(5), {(0, 1): 10.0})),
     "everywhere": lambda: creased(quad_torus(5, 4), 3),
+    "holed": holed,
 }
 PLACED = {"creased": 3}
+#: As it is, mirrored and leaning, and small and far from zero.
+PLACES = [
+    [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+    [[-1.5, 0.25, 0, 4], [0, 1, 0.125, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]],
+    [[0, 0.5, 0, 1.5], [0, 0, 0.3, 3], [0.7, 0, 0, -1], [0, 0, 0, 1]],
+]
 RULES = {
     "usual": Depths(),
     "fine": Depths(most=6, cone=math.radians(3), size_px=(1.0, 8.0)),
@@ -173,10 +190,32 @@ def rates():
         yield {"rate": rate, "base": base, "each": each, "least": least, "budgets": budgets}
 
 
+def session():
+    """What a page has after each message of a walk around a mesh with colours and holes in several places."""
+    mesh = holed()
+    live, page, messages = PatchSession(placed(mesh, PLACES)), Page(), []
+    walk = [(0.0, 9, "usual", 0), (0.3, 9, "usual", 0), (0.3, 5, "fine", 9_000), (3.0, 40, "plain", 0)]
+    for angle, away, rules, budget in walk:
+        depths = depths_json(RULES[rules])
+        request = wish(seen=page.sequence, angle=angle, away=away, depths=depths, budget=budget)
+        live.ask(request_of(json.dumps(request)))
+        page.apply(live.answer())
+        told = {name: page.head[name] for name in ("base", "flags", "faces", "vertices", "triangles")}
+        messages.append({"request": request, **told, "arrays": [digest(array) for array in page.arrays]})
+    matrices = np.reshape(PLACES, (-1,)).tolist()
+    return {
+        "mesh": cage_json(mesh),
+        "placements": matrices,
+        "origin": live.origin.tolist(),
+        "messages": messages,
+    }
+
+
 def cage_json(mesh):
     names = ("positions", "starts", "corners", "crease_edges", "crease_sharpness")
     names += ("corner_vertices", "corner_sharpness", "colours", "uvs")
     values = {name: getattr(mesh, name) for name in names}
+    values["holes"] = mesh.holes if len(mesh.holes) else None
     for name in ("crease_sharpness", "corner_sharpness"):  # JSON knows no infinity
         values[name] = np.minimum(values[name], INFINITELY_SHARP)
     data = {name: array.reshape(-1).tolist() for name, array in values.items() if array is not None}
@@ -196,7 +235,7 @@ def golden():
         placed = {} if placements is None else {"placements": placements.reshape(-1).tolist()}
         cages.append({"name": name, "mesh": cage_json(mesh), **placed, "steps": steps})
     rules = {name: depths_json(rules) for name, rules in RULES.items()}
-    return {"rules": rules, "cages": cages, "rates": list(rates())}
+    return {"rules": rules, "cages": cages, "rates": list(rates()), "session": session()}
 
 
 if __name__ == "__main__":

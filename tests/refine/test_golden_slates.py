@@ -19,8 +19,9 @@ def mesh_of(data):
         name: np.reshape(values, shapes.get(name, (-1,))) if name != "boundary" else values
         for name, values in data.items()
     }
-    for name in ("starts", "corners", "crease_edges", "corner_vertices"):
-        arrays[name] = arrays[name].astype(np.int32)
+    for name in ("starts", "corners", "crease_edges", "corner_vertices", "holes"):
+        if name in arrays:
+            arrays[name] = arrays[name].astype(np.int32)
     return PolyMesh(**arrays).checked()
 
 
@@ -32,6 +33,10 @@ def test_patches_are_golden_bit_for_bit(cage):
         golden.shown(surface, step)
         found = golden.found(surface)
         assert found == {name: step[name] for name in found}
+
+
+def test_what_a_page_has_of_places_colours_and_holes_is_golden():
+    assert golden.session() == GOLDEN["session"]
 
 
 def test_the_budgets_of_a_rate_are_golden():

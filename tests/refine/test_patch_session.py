@@ -169,6 +169,24 @@ def test_what_was_looked_at_long_ago_is_forgotten(monkeypatch):
     assert max(sizes) < 4 * min(sizes)
 
 
+def test_a_mesh_that_needs_more_at_once_is_sent_once(monkeypatch):
+    monkeypatch.setattr("foveal.refine.patch_session._MOST_ROWS", 10)
+    session, page = PatchSession(TORUS), Page()
+    ask(session, page)
+    assert len(page.positions) > 10
+    ask(session, page, angle=0.01)
+    assert (page.head["base"], page.sequence) == (1, 2)
+
+
+def test_texture_coordinates_cost_nothing():
+    uvs = np.random.default_rng(2).random((len(TORUS.positions), 2), np.float32)
+    session, page = PatchSession(replace(COLOURED, uvs=uvs)), Page()
+    ask(session, page)
+    assert len(session._surface.arrays().columns) == 1
+    ask(PatchSession(COLOURED), other := Page())
+    assert page.arrays == other.arrays
+
+
 def test_what_was_lost_is_sent_anew():
     session, page = PatchSession(TORUS), Page()
     ask(session, page)

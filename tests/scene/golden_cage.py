@@ -1,12 +1,13 @@
-"""Writes `cage.fov`, `cage.json`, the same of `cage_sharp`, `_polygons` and `_placed`, in `spec/golden`.
+"""Writes `cage.fov`, `cage.json`, and the same of `cage_sharp`, `_polygons`, `_placed`, `_holed`.
 
-Both pytest and vitest read them.
+They lie in `spec/golden`; both pytest and vitest read them.
 
 PYTHONPATH=tests python -m scene.golden_cage
 """
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,7 @@ PLACEMENTS = [
     [[0, -1.5, 0, 8], [1.5, 0, 0, 0], [0, 0.25, 1.5, 0.1], [0, 0, 0, 1]],
     [[-1, 0, 0, 0.3], [0, 1, 0, 7], [0, 0, 2, 0], [0, 0, 0, 1]],
 ]
+HOLES = [1, 3]
 PATCHES = Refinement(
     "catmull-clark",
     Criteria(),
@@ -108,6 +110,18 @@ def write_placed_json() -> None:
     (FOLDER / "cage_placed.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
 
 
+def write_holed(path: Path) -> None:
+    """A file with holes, in two places."""
+    mesh = replace(POLYGONS, holes=np.array(HOLES, np.int32))
+    write_cage(mesh, path, refinement=PATCHES, up="z", placements=PLACEMENTS[:2])
+
+
+def write_holed_json() -> None:
+    """Of the same polygons, which faces are left out, and how many are shown in all places."""
+    data = {"holes": HOLES, "shown": 2 * (POLYGONS.faces - len(HOLES))}
+    (FOLDER / "cage_holed.json").write_text(json.dumps(data, separators=(",", ":")) + "\n")
+
+
 def write_sharp() -> None:
     """A file with sharp edges."""
     write_cage(MESH, FOLDER / "cage_sharp.fov", refinement=SHARP, sharp_edges=ANGLE)
@@ -122,6 +136,8 @@ def main() -> None:
     write_polygons()
     write_placed(FOLDER / "cage_placed.fov")
     write_placed_json()
+    write_holed(FOLDER / "cage_holed.fov")
+    write_holed_json()
     write_cage(MESH, FOLDER / "cage.fov", refinement=REFINEMENT, up="z")
     regions = {
         name: {"iterations": region.iterations, "edge_px": region.edge_px, "bend": region.bend}

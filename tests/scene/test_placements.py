@@ -66,6 +66,20 @@ def test_the_golden_file_is_read_and_written(tmp_path):
         assert [old.chunk(i) for i in range(2)] == [new.chunk(i) for i in range(2)]
 
 
+def test_the_golden_file_with_holes_is_read_and_written(tmp_path):
+    expected = json.loads((golden_cage.FOLDER / "cage_holed.json").read_text())
+    found = read_cage(golden_cage.FOLDER / "cage_holed.fov")
+    assert found.polygons.holes.tolist() == expected["holes"]
+    in_place = found.in_place()
+    assert in_place.faces - len(in_place.holes) == expected["shown"]
+    golden_cage.write_holed(tmp_path / "again.fov")
+    with (
+        open_container(golden_cage.FOLDER / "cage_holed.fov") as old,
+        open_container(tmp_path / "again.fov") as new,
+    ):
+        assert [old.chunk(i) for i in range(2)] == [new.chunk(i) for i in range(2)]
+
+
 def test_they_are_built_anew_refined_and_drawn(small, tmp_path):
     surface = Slates(cube(), placements=MATRICES)
     surface.show(2)

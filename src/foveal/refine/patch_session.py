@@ -65,10 +65,11 @@ class PatchSession(Dialogue):
         checked = mesh.checked(name)
         self.origin = origin_of(checked, name)
         # About its own middle, so that rows are what is sent.
-        self._mesh, self._name = replace(checked, positions=checked.positions - self.origin), name
+        positions = checked.positions - self.origin
+        self._mesh, self._name = replace(checked, positions=positions, uvs=None), name
         self.has_colours = checked.colours is not None
         self._surface = self._begun()
-        self._most_rows = _MOST_ROWS
+        self._most_rows = 0
         self._rate: tuple[float, FrameRate] | None = None
 
     def _begun(self) -> Slates:

@@ -60,12 +60,15 @@ export interface CageInfo {
   /** Least and greatest corner. */
   readonly box: readonly [Triple, Triple];
   readonly up: Axis;
+  /** In all places. */
   readonly triangles: number;
   readonly vertices: number;
   /** Two vertices each of the edges that stay sharp. */
   readonly sharpEdges: readonly number[];
-  /** How many there are, in a file of polygons. */
+  /** How many are shown, in all places; in a file of polygons. */
   readonly polygons: number | undefined;
+  /** How often these stand, if not once and where they are. */
+  readonly placements: number | undefined;
   readonly refinement: Refinement;
 }
 
@@ -107,15 +110,20 @@ export function parseCage(header: Header, name: string): CageInfo {
   const isBox = Array.isArray(box) && box.length === 2 && box.every(isTriple);
   if (!isTriple(origin) || !isBox || !isCount(triangles) || !isCount(vertices)) throw damaged(name);
   if (!areEdges(sharpEdges, vertices)) throw damaged(name);
-  if (hasPolygons && !isCount(header.faces)) throw damaged(name);
+  const { faces, holes = 0, placements } = hasPolygons ? header : {};
+  const isPlaced = placements !== undefined;
+  if (hasPolygons && !(isCount(faces) && Number(holes) < faces)) throw damaged(name);
+  if (isPlaced && !isCount(placements)) throw damaged(name);
+  const times = isPlaced ? placements : 1;
   return {
     origin,
     box: box as unknown as [Triple, Triple],
     up: up === "x" || up === "z" ? up : "y",
-    triangles,
+    triangles: times * triangles,
     vertices,
     sharpEdges,
-    polygons: hasPolygons ? (header.faces as number) : undefined,
+    polygons: hasPolygons ? times * ((faces as number) - Number(holes)) : undefined,
+    placements,
     refinement: refinementOf(header, name),
   };
 }

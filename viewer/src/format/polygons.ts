@@ -21,6 +21,8 @@ export interface PolygonMesh {
   readonly colours?: Float32Array | undefined;
   /** Two a vertex. */
   readonly uvs?: Float32Array | undefined;
+  /** Faces that are left out of the surface, though they bend the others; rising. */
+  readonly holes?: Int32Array | undefined;
 }
 
 /** What a header says of the chunk's columns. */
@@ -33,9 +35,11 @@ interface Counts {
   readonly boundary: (typeof BOUNDARIES)[number];
   readonly hasColours: boolean;
   readonly hasUvs: boolean;
+  readonly holes: number;
 }
 
-const MOST = 2 ** 26;
+/** Of vertices, faces, corners, .., these in all places. */
+export const MOST = 2 ** 26;
 
 /** @throws Problem if header and chunk do not hold together. That it is a surface is not yet checked. */
 export function polygonsOf(chunk: Uint8Array, header: Header, name: string): PolygonMesh {
@@ -46,21 +50,24 @@ export function polygonsOf(chunk: Uint8Array, header: Header, name: string): Pol
 }
 
 function countsOf(header: Header): Counts | null {
-  const { vertices, faces, corners, creases, sharp_corners: sharpCorners, attributes } = header;
+  const { vertices, faces, corners, creases, sharp_corners: sharpCorners, attributes, holes = 0 } = header;
   const boundary = BOUNDARIES.find((known) => known === header.boundary);
   const areCounts = [vertices, faces, corners].every((n) => isCount(n, 1));
   if (!areCounts || !isCount(creases, 0) || !isCount(sharpCorners, 0) || !boundary) return null;
+  if (!isCount(holes, header.holes === undefined ? 0 : 1)) return null;
+  if (header.triangles !== (corners as number) - 2 * (faces as number)) return null;
   const names = JSON.stringify(attributes ?? null);
   if (!["[]", '["colour"]', '["uv"]', '["colour","uv"]'].includes(names)) return null;
   const [hasColours, hasUvs] = [names.includes("colour"), names.includes("uv")];
-  const numbers = { vertices, faces, corners, creases, sharpCorners } as Record<string, number>;
+  const numbers = { vertices, faces, corners, creases, sharpCorners, holes } as Record<string, number>;
   return { ...numbers, boundary, hasColours, hasUvs } as unknown as Counts;
 }
 
 function columnsOf(chunk: Uint8Array, counts: Counts): PolygonMesh | null {
   const { vertices: n, faces, corners: k, creases, sharpCorners, boundary, hasColours, hasUvs } = counts;
   const wide = (hasColours ? 3 : 0) + (hasUvs ? 2 : 0);
-  if (chunk.length !== 24 * n + 4 * (faces + k + 3 * creases + 2 * sharpCorners + wide * n)) return null;
+  const words = faces + k + 3 * creases + 2 * sharpCorners + wide * n + counts.holes;
+  if (chunk.length !== 24 * n + 4 * words) return null;
   const { buffer } = chunk.slice();
   let at = 24 * n;
   const take = <T>(Column: new (buffer: ArrayBuffer, at: number, length: number) => T, length: number): T => {
@@ -78,10 +85,11 @@ function columnsOf(chunk: Uint8Array, counts: Counts): PolygonMesh | null {
     boundary,
     colours: hasColours ? take(Float32Array, 3 * n) : undefined,
     uvs: hasUvs ? take(Float32Array, 2 * n) : undefined,
+    holes: take(Int32Array, counts.holes),
   };
   const isSound = starts !== null && areFinite(mesh.positions) && areVertices(mesh, n) && areTags(mesh);
   const isDrawn = areFinite(mesh.uvs ?? []) && (mesh.colours ?? []).every((c) => c >= 0 && c <= 255);
-  return isSound && isDrawn ? { ...mesh, starts } : null;
+  return isSound && isDrawn && areHoles(mesh.holes, faces) ? { ...mesh, starts } : null;
 }
 
 /** Null if a face has fewer than three corners, or they are not as many together as there should be. */
@@ -109,6 +117,12 @@ function areVertices({ corners, creaseEdges, cornerVertices }: Columns, count: n
 function areTags({ creaseSharpness, cornerSharpness }: Columns): boolean {
   const isSharpness = (s: number) => s >= 0; // so that it is a number
   return creaseSharpness.every(isSharpness) && cornerSharpness.every(isSharpness);
+}
+
+/** Rising, each once, and not all. */
+function areHoles(holes: Int32Array, faces: number): boolean {
+  const isRising = holes.every((f, i) => f > (i > 0 ? holes[i - 1]! : -1));
+  return isRising && holes.length < faces && (holes.at(-1) ?? 0) < faces;
 }
 
 function areFinite(values: Float64Array | Float32Array | readonly number[]): boolean {

@@ -1,9 +1,10 @@
-/** The control mesh in chunk 0 of a `.fov` of kind `cage` (spec/container.md). */
+/** What the chunks of a `.fov` of kind `cage` hold: the control mesh, and where it stands (spec/container.md). */
 import type { CageInfo } from "../format/cage";
 import { damaged } from "../format/container";
 import { crc32 } from "../format/crc32";
-import { type PolygonMesh, polygonsOf } from "../format/polygons";
-import { firstChunk, type OpenFile } from "../stream/file";
+import { placementsOf } from "../format/placements";
+import { MOST, type PolygonMesh, polygonsOf } from "../format/polygons";
+import { chunkOf, type OpenFile } from "../stream/file";
 import type { ControlMesh } from "./surface";
 
 const VERTEX_BYTES = 24;
@@ -11,7 +12,7 @@ const FACE_BYTES = 12;
 
 /** @throws Problem if it cannot be fetched, or is not what the header says. */
 export async function readControlMesh(file: OpenFile, info: CageInfo): Promise<ControlMesh> {
-  const mesh = controlMeshOf(await checkedChunk(file), info);
+  const mesh = controlMeshOf(await checkedChunk(file, 0), info);
   if (!mesh) throw damaged(file.source.name);
   return mesh;
 }
@@ -24,12 +25,30 @@ export async function readControlMesh(file: OpenFile, info: CageInfo): Promise<C
 export async function readPolygons(file: OpenFile, info: CageInfo): Promise<PolygonMesh> {
   const { name } = file.source;
   if (info.polygons === undefined) return polygonsOfTriangles(await readControlMesh(file, info));
-  return polygonsOf(await checkedChunk(file), file.container.header, name);
+  return polygonsOf(await checkedChunk(file, 0), file.container.header, name);
 }
 
-async function checkedChunk(file: OpenFile): Promise<Uint8Array> {
-  const chunk = await firstChunk(file);
-  if (crc32(chunk) !== file.container.checksums[0]) throw damaged(file.source.name);
+/**
+ * Where polygons stand, by 16 numbers each; undefined where they stand once, where they are.
+ *
+ * @throws Problem as `readControlMesh`.
+ */
+export async function readPlacements(
+  file: OpenFile,
+  { placements }: CageInfo,
+): Promise<Float64Array | undefined> {
+  const { container, source } = file;
+  if (container.lengths.length !== (placements === undefined ? 1 : 2)) throw damaged(source.name);
+  if (placements === undefined) return undefined;
+  const isWithin = placements * (container.header.corners as number) <= MOST;
+  const matrices = isWithin && placementsOf(await checkedChunk(file, 1), placements);
+  if (!matrices) throw damaged(source.name);
+  return matrices;
+}
+
+async function checkedChunk(file: OpenFile, number: number): Promise<Uint8Array> {
+  const chunk = await chunkOf(file, number);
+  if (crc32(chunk) !== file.container.checksums[number]) throw damaged(file.source.name);
   return chunk;
 }
 

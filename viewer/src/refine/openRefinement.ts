@@ -4,7 +4,7 @@ import { Problem } from "../format/problem";
 import type { OpenFile } from "../stream/file";
 import { LiveSource } from "../stream/live";
 import type { RefinementSource } from "../stream/refinement";
-import { readControlMesh, readPolygons } from "./controlMesh";
+import { readControlMesh, readPlacements, readPolygons } from "./controlMesh";
 import { PageSource } from "./pageSource";
 import type { Cage } from "./sessions";
 
@@ -32,7 +32,10 @@ async function readCage(file: OpenFile, info: CageInfo, scheme: Scheme): Promise
       `${file.source.name} has sharp edges, which ${scheme} does not know. Choose sqrt3, or build it again with creases.`,
     );
   }
-  if (scheme === CATMULL_CLARK) return { scheme, mesh: await readPolygons(file, info) };
+  if (scheme === CATMULL_CLARK) {
+    const mesh = await readPolygons(file, info);
+    return { scheme, mesh, placements: await readPlacements(file, info) };
+  }
   throw new Problem(
     "version",
     `${file.source.name} is refined (${scheme}) by a server, and this page has none. Open it with: foveal view`,

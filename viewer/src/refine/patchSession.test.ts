@@ -7,6 +7,7 @@ import { parseMessage, SlotBuffers, type WireMessage } from "../format/wire";
 import type { WireCamera } from "../stream/refinement";
 import type { Request } from "./dialogue";
 import { PatchSession } from "./patchSession";
+import { sessionOf } from "./sessions";
 import { Slates } from "./slates/slates";
 
 const ORIGIN = [0.25, -0.5, 0] as const;
@@ -183,6 +184,47 @@ test("what was kept for views long ago is forgotten, and all is told anew", () =
   expect(bases.slice(1).filter((base) => base > 0).length).toBeGreaterThan(0);
 });
 
+/** Of two that are as near the even one. */
+function nearest(value: number): number {
+  return value % 1 === 0.5 ? 2 * Math.round(value / 2) : Math.round(value);
+}
+
+test("colours go with their vertices, to the nearest byte, and are not there without", () => {
+  const mesh = torus(14, 9);
+  const colours = Float32Array.from(mesh.positions, (_, i) => (i % 3 === 1 ? 0.5 : (7 * i) % 256));
+  const page = new Page({ ...mesh, colours, uvs: new Float32Array((2 * colours.length) / 3) });
+  const plain = new Page(mesh);
+  for (const [angle, away] of [
+    [0, 4],
+    [1, 2],
+    [4, 3],
+    [4, 30],
+  ]) {
+    const camera = cameraAt(angle!, away);
+    expect(page.ask({ camera })!.hasColours).toBe(true);
+    expect(plain.ask({ camera })!.hasColours).toBe(false);
+    expect(page.triangles).toEqual(plain.triangles);
+    const positions = mesh.positions.map((p, i) => p - ORIGIN[i % 3]!);
+    const surface = new Slates({ ...mesh, positions, colours }, { isSingle: true });
+    const eye = camera.position.map((p, i) => p - ORIGIN[i]!) as [number, number, number];
+    surface.update({ eye, pixels: camera.height / (2 * Math.tan(camera.fov / 2)) }, FINE);
+    const wanted = new Map<string, string>();
+    const row = (column: Numbers, v: number) => Array.from(column.subarray(3 * v, 3 * v + 3));
+    for (const v of surface.shown.faces) {
+      const [place, colour, normal] = surface.blocks.columns.map((column) => row(column, v));
+      wanted.set(`${place} ${normal}`, `${colour!.map(nearest)},255`);
+    }
+    const { slots } = page;
+    for (const v of slots.faces.subarray(0, 3 * slots.faceCount)) {
+      if (v === 0) continue;
+      const seen = [...slots.colours.subarray(4 * v, 4 * v + 4)];
+      const key = `${row(slots.positions, v)} ${row(slots.starts, v)}`;
+      expect(`${seen}`).toBe(wanted.get(key));
+    }
+  }
+  expect(plain.slots.colours.length).toBe(0);
+});
+
 test("an odd mesh is refused in a sentence", () => {
   const mesh = torus(4, 3);
   expect(() => new PatchSession(torus(4, 3, 1e39), [0, 0, 0], "far.fov")).toThrow("far.fov is too large");
@@ -215,6 +257,13 @@ test("an odd mesh is refused in a sentence", () => {
     expect(make).toThrow("odd.fov");
     expect(make).toThrow(sentence);
   }
+});
+
+test("more patches than a page shows are refused before they are made", () => {
+  const placements = new Float64Array(16 * 40_000);
+  for (let i = 0; i < placements.length; i++) placements[i] = i % 5 === 0 ? 1 : 0;
+  const cage = { scheme: "catmull-clark", mesh: torus(14, 9), placements } as const;
+  expect(() => sessionOf(cage, ORIGIN, "many.fov")).toThrow("many.fov has 5,040,000 patches");
 });
 
 test("a vertex of thousands of faces is refused, and of hundreds not", () => {

@@ -12,6 +12,8 @@ import type { Triple } from "../format/graph";
 import type { PolygonMesh } from "../format/polygons";
 import { Problem } from "../format/problem";
 import { Dialogue, MOST_TRIANGLES, type Request } from "./dialogue";
+import { longer } from "./slates/arena";
+import type { Blocks } from "./slates/blocks";
 import { FrameRate } from "./slates/rate";
 import { Slates } from "./slates/slates";
 import type { View } from "./slates/views";
@@ -29,6 +31,8 @@ export class PatchSession extends Dialogue {
   protected override readonly threshold = 1;
   readonly #mesh: PolygonMesh;
   #surface: Slates;
+  /** Of all rows, or none at all. */
+  #colours: Uint32Array | null = null;
   /** 0 before the first view: what one needs may be more already. */
   #mostRows = 0;
   #rate: FrameRate | null = null;
@@ -52,11 +56,12 @@ export class PatchSession extends Dialogue {
     if (!positions.every((p) => Math.abs(p) < MOST_SINGLE)) {
       throw new Problem("damaged", `${name} is too large to be drawn. Scale it down.`);
     }
-    this.#mesh = { ...mesh, positions };
+    this.#mesh = { ...mesh, positions, uvs: undefined }; // which nobody draws
     this.#surface = this.#begun();
   }
 
   #begun(): Slates {
+    this.#colours = this.#mesh.colours ? new Uint32Array(0) : null;
     return new Slates(this.#mesh, { isSingle: true, name: this.name });
   }
 
@@ -74,6 +79,7 @@ export class PatchSession extends Dialogue {
     const rules = request.depths ?? USUAL_DEPTHS;
     this.#surface.update(this.#viewOf(request), rules, this.#budget(request));
     if (this.#mostRows === 0) this.#mostRows = Math.max(this.mostRows, 2 * this.#surface.blocks.rows);
+    if (this.#colours) this.#colours = packedColours(this.#surface.blocks, this.#colours);
     this.last = request;
     this.triangles = this.#surface.shown.triangles;
   }
@@ -105,10 +111,11 @@ export class PatchSession extends Dialogue {
     if (isFresh) return changedParts(words, null);
     const { blocks, shown } = this.#surface;
     const [rows, faces] = [timesThree(blocks.changed), timesThree(shown.changed)];
-    return { isFresh, words, bounds: [faces, rows, rows, wordsOf(shown.changed)] };
+    const bounds = [faces, rows, rows, wordsOf(shown.changed), blocks.changed];
+    return { isFresh, words, bounds: bounds.slice(0, words.length) };
   }
 
-  /** Faces, positions, normals, depths. A further column of `blocks`, as of colours, has rows like these. */
+  /** Faces, positions, normals, depths, and colours if there are any. */
   #words(): SlotWords {
     const { blocks, shown } = this.#surface;
     const [positions, normals] = [blocks.columns[0]!, blocks.columns.at(-1)!].map(
@@ -116,8 +123,29 @@ export class PatchSession extends Dialogue {
     );
     const faces = shown.faces.subarray(0, 3 * shown.rows);
     const levels = new Uint32Array(shown.levels.buffer, 0, Math.ceil(shown.rows / 4));
-    return [faces, positions!, normals!, levels];
+    const words = [faces, positions!, normals!, levels] as const;
+    return this.#colours ? [...words, this.#colours.subarray(0, blocks.rows)] : words;
   }
+}
+
+/** Colours of all rows as words, red lowest and 255 highest, of those before the last update. */
+function packedColours({ columns, rows, changed }: Blocks, before: Uint32Array): Uint32Array {
+  const words = rows > before.length ? longer(before, Math.max(rows, before.length * 1.5)) : before;
+  const bytes = new Uint8Array(words.buffer);
+  const colours = columns[1]!;
+  for (let i = 0; i < changed.length; i += 2) {
+    for (let v = changed[i]!; v < changed[i + 1]!; v++) {
+      for (let k = 0; k < 3; k++) bytes[4 * v + k] = byteOf(colours[3 * v + k]!);
+      bytes[4 * v + 3] = 255;
+    }
+  }
+  return words;
+}
+
+/** The nearest of 0 to 255, the even one of two that are as near. */
+function byteOf(value: number): number {
+  const up = Math.round(Math.min(Math.max(value, 0), 255));
+  return up - value === 0.5 ? up & ~1 : up;
 }
 
 /** Of words where there are three a row. */

@@ -12,12 +12,13 @@ const HEAD_WORDS = 10;
 const SETTLED = 1;
 const LIMITS = 2;
 const NORMALS = 4;
+const COLOURS = 8;
 
 /** Changes are looked for in blocks of so many words: a range costs three words itself. */
 const BLOCK = 16;
 
-/** Faces, positions, starts or normals, and tags, as words. */
-export type SlotWords = readonly [Uint32Array, Uint32Array, Uint32Array, Uint32Array];
+/** Faces, positions, starts or normals, tags, and colours if there are any, as words. */
+export type SlotWords = readonly [Uint32Array, Uint32Array, Uint32Array, Uint32Array, Uint32Array?];
 
 /** The slots of a refinement, places relative to `origin`. √3 triangles are green, so tags are levels. */
 export function slotWords(refined: Sqrt3, isLimit: boolean, origin: Triple): SlotWords {
@@ -52,7 +53,7 @@ export interface SlotParts {
 
 /** All that brings a page from the slots `was`, which may be fewer, to `now`; null for nothing. */
 export function changedParts(now: SlotWords, was: SlotWords | null): SlotParts {
-  const bounds = now.map((words, i) => changesOf(words, was?.[i] ?? NOTHING));
+  const bounds = now.map((words, i) => changesOf(words!, was?.[i] ?? NOTHING));
   return { isFresh: was === null, words: now, bounds };
 }
 
@@ -73,8 +74,8 @@ export function slotMessage(head: SlotHead, { words: now, bounds: changes }: Slo
   const ranges = changes.reduce((sum, bounds) => sum + bounds.length / 2, 0);
   const inner = changes.flat().reduce((sum, at, i) => sum + (i % 2 === 0 ? -at : at), 0);
   const out = new Uint32Array(HEAD_WORDS + 3 * ranges + inner);
-  const flags =
-    (head.isSettled ? SETTLED : 0) | (head.isLimit ? LIMITS : 0) | (head.hasNormals ? NORMALS : 0);
+  const kinds = (head.hasNormals ? NORMALS : 0) | (now[4] ? COLOURS : 0);
+  const flags = (head.isSettled ? SETTLED : 0) | (head.isLimit ? LIMITS : 0) | kinds;
   const slots = [now[0].length / 3, now[1].length / 3];
   out.set([MAGIC, head.sequence, head.base, flags, ...slots, head.triangles, ranges]);
   new Float32Array(out.buffer).set([head.milliseconds, head.threshold], HEAD_WORDS - 2);

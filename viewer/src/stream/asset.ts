@@ -2,7 +2,7 @@
 import { damaged } from "../format/container";
 import { crc32 } from "../format/crc32";
 import { type Graph, type MultiresInfo, parseGraph, parseInfo } from "../format/graph";
-import { firstChunk, type OpenFile, type OpenOptions, openFile } from "./file";
+import { chunkOf, type OpenFile, type OpenOptions, openFile } from "./file";
 
 export interface Asset extends OpenFile {
   readonly info: MultiresInfo;
@@ -31,7 +31,7 @@ export async function assetOf(file: OpenFile, signal?: AbortSignal): Promise<Ass
   const { source, container } = file;
   const { name } = source;
   const info = parseInfo(container.header, name);
-  const chunk = await firstChunk(file, signal);
+  const chunk = await chunkOf(file, 0, signal);
   if (crc32(chunk) !== container.checksums[0]) throw damaged(name);
   const { graph, tables } = parseGraph(chunk, container, name);
   return { source, container, info, graph, tables, nodeBytes: bytesOfNodes(graph, info) };

@@ -28,10 +28,14 @@ export async function openFile(url: string, options: OpenOptions = {}): Promise<
   return { source, container: parseContainer(headBytes, name, source.size) };
 }
 
-/** Bytes of chunk 0; that they are the right ones is not yet checked. */
-export async function firstChunk({ source, container }: OpenFile, signal?: AbortSignal): Promise<Uint8Array> {
-  const first = container.starts[0]!;
-  const end = first + container.lengths[0]!;
+/** Bytes of a chunk, with all before it; that they are the right ones is not yet checked. */
+export async function chunkOf(
+  { source, container }: OpenFile,
+  number: number,
+  signal?: AbortSignal,
+): Promise<Uint8Array> {
+  const first = container.starts[number]!;
+  const end = first + container.lengths[number]!;
   return (await atLeast(source, end, signal)).subarray(first, end);
 }
 

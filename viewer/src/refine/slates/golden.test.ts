@@ -5,6 +5,9 @@ import text from "../../../../spec/golden/slates.json?raw";
 import type { DepthRules } from "../../format/cage";
 import type { Triple } from "../../format/graph";
 import type { PolygonMesh } from "../../format/polygons";
+import { parseMessage, SlotBuffers } from "../../format/wire";
+import type { Request } from "../dialogue";
+import { sessionOf } from "../sessions";
 import { Placements } from "./placements";
 import { FrameRate } from "./rate";
 import { Slates } from "./slates";
@@ -35,6 +38,7 @@ interface GoldenMesh {
   readonly boundary: PolygonMesh["boundary"];
   readonly colours?: number[];
   readonly uvs?: number[];
+  readonly holes?: number[];
 }
 
 interface Golden {
@@ -52,6 +56,20 @@ interface Golden {
     readonly least: number;
     readonly budgets: number[];
   }[];
+  readonly session: {
+    readonly mesh: GoldenMesh;
+    readonly placements: number[];
+    readonly origin: Triple;
+    readonly messages: readonly {
+      readonly request: Request;
+      readonly base: number;
+      readonly flags: number;
+      readonly faces: number;
+      readonly vertices: number;
+      readonly triangles: number;
+      readonly arrays: readonly string[];
+    }[];
+  };
 }
 
 const golden: Golden = JSON.parse(text);
@@ -68,6 +86,7 @@ function meshOf(data: GoldenMesh): PolygonMesh {
     boundary: data.boundary,
     colours: data.colours && Float32Array.from(data.colours),
     uvs: data.uvs && Float32Array.from(data.uvs),
+    holes: data.holes && Int32Array.from(data.holes),
   };
 }
 
@@ -100,6 +119,33 @@ describe.each(golden.cages)("$name", ({ mesh, placements, steps }) => {
     });
     expect(digest(...columns)).toBe(step.points);
   });
+});
+
+test("what a page has of places, colours and holes", () => {
+  const { mesh, placements, origin, messages } = golden.session;
+  const cage = {
+    scheme: "catmull-clark",
+    mesh: meshOf(mesh),
+    placements: Float64Array.from(placements),
+  } as const;
+  const session = sessionOf(cage, origin, "placed.fov");
+  const page = new SlotBuffers();
+  for (const { request, arrays, flags, ...told } of messages) {
+    const answer = session.answer(request)!;
+    const message = parseMessage(answer);
+    expect(message).toMatchObject(told);
+    expect(new Uint32Array(answer)[3]).toBe(flags);
+    page.apply(message);
+    const { faces, vertices } = message;
+    const held = [
+      page.faces.subarray(0, 3 * faces),
+      page.positions.subarray(0, 3 * vertices),
+      page.starts.subarray(0, 3 * vertices),
+      page.tags.subarray(0, 4 * Math.ceil(faces / 4)),
+      page.colours.subarray(0, 4 * vertices),
+    ];
+    expect(held.map((array) => digest(array))).toEqual(arrays);
+  }
 });
 
 test.each(golden.rates)("a budget for $rate frames a second", ({ rate, base, each, least, budgets }) => {

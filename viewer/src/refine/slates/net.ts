@@ -39,7 +39,7 @@ export interface SlateCage {
   readonly patches: number;
   /** Which face of the mesh a quadrangle is of. */
   readonly faces: Int32Array;
-  /** 0 for holes, as the boundary rule "none" leaves. */
+  /** 0 for holes: the mesh's own, and those that the boundary rule "none" leaves. */
   readonly isShown: Uint8Array;
   /** Rows of three of the quadrangles' vertices, of those of the mesh's. */
   readonly points: (rows: Float64Array) => Float64Array;
@@ -78,9 +78,10 @@ function stepsOf(sharpness: Float64Array): number {
   return Math.ceil(sharpness.reduce((most, s) => (s < Infinity ? Math.max(most, s) : most), 0));
 }
 
-/** With the boundary "none": faces at the ends of a border edge without an infinitely sharp tag. */
+/** The mesh's own; with the boundary "none" also faces at the ends of border edges not sharp for ever. */
 function holesOf(mesh: PolygonMesh, { count, starts, corners, edge, ends, mates }: Polygons): Uint8Array {
   const isHole = new Uint8Array(starts.length - 1);
+  for (const f of mesh.holes ?? []) isHole[f] = 1;
   if (mesh.boundary !== "none") return isHole;
   const tagged = new Set<number>();
   mesh.creaseSharpness.forEach((s, i) => {

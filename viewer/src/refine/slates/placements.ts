@@ -4,9 +4,9 @@
  * @module refine/slates/placements
  */
 import type { Triple } from "../../format/graph";
+import { stretchOf } from "../../format/placements";
 
 const ONE = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
-const SWEEPS = 30;
 
 export class Placements {
   readonly count: number;
@@ -21,7 +21,7 @@ export class Placements {
     this.#inverses = new Float64Array(12 * this.count);
     for (let i = 0; i < this.count; i++) {
       const m = Array.from({ length: 12 }, (_, j) => matrices[16 * i + j]!);
-      this.scales[i] = largest(m);
+      this.scales[i] = stretchOf(m).most;
       this.#inverses.set(inverse(m), 12 * i);
     }
   }
@@ -52,30 +52,4 @@ function inverse(m: readonly number[]): number[] {
     const [u, v, w] = row.map((entry) => entry / det) as [number, number, number];
     return [u, v, w, -(u * x + v * y + w * z)];
   });
-}
-
-/** The largest singular value of the left three columns, by turning their products until they are diagonal. */
-function largest(m: readonly number[]): number {
-  const dot = (a: number, b: number) => m[a]! * m[b]! + m[a + 4]! * m[b + 4]! + m[a + 8]! * m[b + 8]!;
-  const s = [0, 1, 2].map((a) => [0, 1, 2].map((b) => dot(a, b)));
-  for (let sweep = 0; sweep < SWEEPS; sweep++) {
-    for (const [p, q] of [
-      [0, 1],
-      [0, 2],
-      [1, 2],
-    ] as const) {
-      if (s[p]![q] !== 0) rotate(s, p, q);
-    }
-  }
-  return Math.sqrt(Math.max(s[0]![0]!, s[1]![1]!, s[2]![2]!));
-}
-
-/** Jacobi's rotation that makes entry (p, q) zero. */
-function rotate(s: number[][], p: number, q: number): void {
-  const theta = (s[q]![q]! - s[p]![p]!) / (2 * s[p]![q]!);
-  const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
-  const c = 1 / Math.sqrt(t * t + 1);
-  const turned = (a: number, b: number): [number, number] => [c * a - t * c * b, t * c * a + c * b];
-  for (const row of s) [row[p], row[q]] = turned(row[p]!, row[q]!);
-  for (let k = 0; k < 3; k++) [s[p]![k], s[q]![k]] = turned(s[p]![k]!, s[q]![k]!);
 }

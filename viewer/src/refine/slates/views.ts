@@ -37,7 +37,7 @@ export class Views {
     private readonly cage: SlateCage,
     private readonly limits: Limits,
   ) {
-    this.#isOpen = cage.net.mates.some((mate) => mate < 0);
+    this.#isOpen = cage.net.mates.some((mate) => mate < 0) || cage.isShown.includes(0);
   }
 
   /** Of one view, for each placement: by the rules, and within a budget where that is not null. */
