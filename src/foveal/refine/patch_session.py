@@ -75,7 +75,7 @@ class PatchSession(Dialogue):
     def _begun(self) -> Slates:
         self._is_fresh = True
         self._colours = np.zeros(0, np.uint32)
-        return Slates(self._mesh, dtype=np.float32, name=self._name)
+        return Slates(self._mesh, dtype=np.float32, workers=None, name=self._name)
 
     @property
     def _is_settled(self) -> bool:
