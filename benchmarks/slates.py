@@ -88,6 +88,12 @@ def throughput(folder: Path, *, is_quick: bool) -> Iterator[Row]:
             except peer.Missing as reason:
                 why = str(reason)
         others = {"OpenSubdiv Bfr": float(np.median(theirs))} if theirs else {}
+        for package, name in peer.PACKAGES.items():
+            try:
+                triangles, ms = peer.package_catmark(package, path, depth)
+                others[name] = triangles / 1e3 / ms
+            except peer.Missing:
+                pass  # large, and slower than Bfr: not asked for
         yield Row.of(key, case, ours, "Mtri/s", "higher", bar=bar, peers=others, why=why)
 
 
