@@ -151,7 +151,7 @@ def _of_file(path: Path, prim: str | None, progress: Progress) -> "PolyMesh":
 
     if path.suffix.lower() not in SUFFIXES:
         _refuse_prim(path, prim)
-        return read_polygons(path)
+        return read_polygons(path, progress=progress)
     mesh = read_polygons(path, prim=prim)
     if prim is None and len(names := meshes_of(path)) > 1:
         progress.note(

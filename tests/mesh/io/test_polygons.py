@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -63,6 +64,26 @@ def test_boundaries_have_the_numbers_of_opensubdiv(number, boundary, tmp_path):
 def test_other_tags_are_passed_by(tmp_path):
     text = HOUSE + "t creasemethod 0/0/1 chaikin\nt vertexedit 1/3/2 x\nt\nt \n"
     assert_same(read(tmp_path, text), read(tmp_path, HOUSE))
+
+
+@pytest.mark.parametrize(
+    ("tags", "told"),
+    [
+        (
+            "t creasemethod 0/0/1 chaikin\nt vertexedit 1/3/2 x\nt vertexedit 1/3/2 y\n",
+            "creasemethod, vertexedit",
+        ),
+        ("t creasemethod 0/0/1 normal\nt facevaryinginterpolateboundary 1/0/0 1\n", None),
+    ],
+)
+def test_tags_that_would_give_another_surface_are_told_of(tags, told, tmp_path):
+    said = []
+    path = tmp_path / "house.obj"
+    path.write_text(HOUSE + tags)
+    read_polygons(path, progress=SimpleNamespace(note=said.append))
+    assert len(said) == (told is not None)
+    if told:
+        assert f"tags {told} are passed by" in said[0]
 
 
 def test_holes(tmp_path):

@@ -25,6 +25,8 @@ class ObjTags:
     boundary: Boundary = "edge_only"
     uvs: NDArray[np.float32] | None = None
     holes: list[int] = field(default_factory=list)
+    passed_by: list[str] = field(default_factory=list)
+    """Names of tags that would give another surface, each once."""
 
     def take(self, text: str) -> None:
         """Heed the rest of a `t` line: a name, how many integers/numbers/words follow, and those.
@@ -34,6 +36,10 @@ class ObjTags:
         """
         name, *rest = text.split("#", 1)[0].split()
         if name not in ("crease", "corner", "interpolateboundary", "hole"):
+            # "normal" is how it is done here, and texture coordinates do not move the surface.
+            is_ours = rest[-1:] == ["normal"] or name == "facevaryinginterpolateboundary"
+            if not is_ours and name not in self.passed_by:
+                self.passed_by.append(name)
             return
         whole, real, _ = (int(count) for count in rest[0].split("/"))
         indices = [_index(word) for word in rest[1 : 1 + whole]]

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from foveal.base.progress import SILENT, Progress
+
 from ..polymesh import PolyMesh
 from .blocks import MeshSource, VertexBlock
 from .detect import detect
@@ -18,15 +20,17 @@ from .usd import SUFFIXES, read_usd
 __all__ = ["read_polygons"]
 
 
-def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -> PolyMesh:
+def read_polygons(
+    path: str | os.PathLike[str], /, *, prim: str | None = None, progress: Progress = SILENT
+) -> PolyMesh:
     """Read a whole mesh file as polygons: OBJ, OFF, PLY and USD; as triangles what `read_mesh` reads beside.
 
     Vertices and faces are those of the file, in its order; faces of fewer than three corners are left out.
     Of files that hold triangles alone (STL, GLB), vertices at exactly the same position are merged.
 
     Of OBJ the tags that OpenSubdiv's shapes write are kept: `t crease`, `t corner`, `t hole` and
-    `t interpolateboundary` (0 none, 1 edge and corner, 2 edge only); others are passed by, which are
-    `creasemethod`, `smoothtriangles` and edits. Texture coordinates are kept of an OBJ in which each
+    `t interpolateboundary` (0 none, 1 edge and corner, 2 edge only); others are passed by and told of, which
+    are `creasemethod`, `smoothtriangles` and edits. Texture coordinates are kept of an OBJ in which each
     vertex has one, that is, without seams; with seams they are left out, since a vertex is one vertex here.
 
     Parameters
@@ -35,6 +39,8 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
         A file of any of these formats; but for USD it may be gzipped.
     prim : str, optional
         The path of the mesh in a USD file; otherwise the first is read. See `usd.read_usd`.
+    progress : Progress
+        Told of tags that are passed by.
 
     Raises
     ------
@@ -56,6 +62,10 @@ def read_polygons(path: str | os.PathLike[str], /, *, prim: str | None = None) -
     if kind != "obj":
         return PolyMesh(positions, starts, corners, colours=colours).checked(path.name)
     tags = read_obj_tags(path, len(positions))
+    if tags.passed_by:
+        progress.note(
+            f"{path}: its tags {', '.join(tags.passed_by)} are passed by: the surface is as without them."
+        )
     parts: list[Any] = [positions, starts, corners, list(tags.creases), list(tags.creases.values())]
     parts += [list(tags.sharp_corners), list(tags.sharp_corners.values())]
     parts += [tags.boundary, colours, tags.uvs, tags.holes]
