@@ -1,16 +1,19 @@
 """A live scene for tests of refinements, and what they share: cameras, keys, sliders, compared pictures."""
 
 import math
+from contextlib import closing, contextmanager
 
 import numpy as np
 import pytest
 
 from e2e.page import idle, stats
+from e2e.static_server import StaticServer
 from foveal.mesh.shapes import bumpy_sphere
 from foveal.refine import Criteria, Region
 from foveal.refine.session import warm
 from foveal.scene import Scene, View
 from foveal.scene.cage_file import write_cage
+from foveal.scene.publish import publish
 from foveal.scene.refinement import Refinement
 from foveal.scene.scene import Layer
 from foveal.server import start
@@ -22,6 +25,23 @@ FRONT = {"position": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0], "fieldOfVi
 NEAR = {"position": [0.3, 0.2, 1.6], "target": [0.1, 0.1, 0.9], "up": [0, 1, 0], "fieldOfViewDegrees": 40}
 #: Without the picture from elsewhere, which would be in the pictures that are compared.
 PLAIN = "#v=1&n=0"
+
+
+def published(scene, folder, viewer):
+    """The files of its site."""
+    site = publish(scene, folder, viewer=viewer)
+    return {p.relative_to(site).as_posix(): p for p in site.rglob("*") if p.is_file()}
+
+
+@contextmanager
+def served(way, scene, viewer, folder):
+    """A scene "live", or as static files once it is published into a folder."""
+    if way == "live":
+        with start(scene, port=0, viewer=viewer) as server:
+            yield server
+        return
+    with closing(StaticServer(published(scene, folder, viewer))) as server:
+        yield server
 
 
 @pytest.fixture(scope="module")

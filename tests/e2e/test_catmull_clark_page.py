@@ -10,7 +10,7 @@ import pytest
 
 import foveal
 from e2e.page import picture, stats
-from e2e.refined import FRONT, HEIGHT, WIDTH, go, press, slide
+from e2e.refined import FRONT, HEIGHT, PLAIN, WIDTH, go, press, published, served, slide
 from e2e.static_server import StaticServer
 from foveal.mesh.poly_shapes import cube, prism
 from foveal.mesh.polymesh import PolyMesh
@@ -18,14 +18,11 @@ from foveal.refine.patch_session import warm_patches
 from foveal.refine.slates import Slates
 from foveal.scene import Scene
 from foveal.scene.cage_file import write_cage
-from foveal.scene.publish import publish
 from foveal.scene.refinement import chosen
 from foveal.scene.scene import Layer
-from foveal.server import start
 from foveal.view.camera import Camera
 from refine.cages import creased
 
-PLAIN = "#v=1&n=0"
 SIDE = {**FRONT, "position": [2.5, 3, 4.5]}
 TOP = {(4, 5): 10.0, (5, 7): 10.0, (6, 7): 10.0, (4, 6): 10.0}
 MESH = PolyMesh.of(cube().positions, cube().corners.reshape(-1, 4), creases=TOP)
@@ -41,22 +38,11 @@ def scene(tmp_path_factory):
     return Scene("Creased", (Layer("cube", path, refinement=REFINEMENT),), background="#000000")
 
 
-def published(scene, folder, viewer):
-    """The files of its site."""
-    site = publish(scene, folder, viewer=viewer)
-    return {p.relative_to(site).as_posix(): p for p in site.rglob("*") if p.is_file()}
-
-
 @pytest.fixture(params=["live", "static"])
 def site(request, scene, viewer_folder, tmp_path):
     """In the place of the static files of the other tests: a live layer, or what was published."""
-    if request.param == "live":
-        with start(scene, port=0, viewer=viewer_folder) as server:
-            yield server
-        return
-    server = StaticServer(published(scene, tmp_path / "site", viewer_folder))
-    yield server
-    server.close()
+    with served(request.param, scene, viewer_folder, tmp_path / "site") as server:
+        yield server
 
 
 def camera_of(view):

@@ -10,9 +10,8 @@ import pytest
 
 import foveal
 from e2e.page import picture
-from e2e.refined import FRONT, go, press
-from e2e.static_server import StaticServer
-from e2e.test_catmull_clark_page import PLAIN, camera_of, near, published, steps_of
+from e2e.refined import FRONT, PLAIN, go, press, served
+from e2e.test_catmull_clark_page import camera_of, near, steps_of
 from foveal.mesh.poly_shapes import cube
 from foveal.refine.patch_session import warm_patches
 from foveal.refine.slates import Slates
@@ -21,7 +20,6 @@ from foveal.scene import Scene
 from foveal.scene.cage_file import write_cage
 from foveal.scene.refinement import chosen
 from foveal.scene.scene import Layer
-from foveal.server import start
 
 VIEW = {**FRONT, "position": [1, 2, 9], "target": [1, 0, 0]}
 #: A cube coloured by where its vertices are, and the same mirrored and larger beside it.
@@ -41,13 +39,8 @@ def scene(tmp_path_factory):
 @pytest.fixture(params=["live", "static"])
 def site(request, scene, viewer_folder, tmp_path):
     """In the place of the static files of the other tests: a live layer, or what was published."""
-    if request.param == "live":
-        with start(scene, port=0, viewer=viewer_folder) as server:
-            yield server
-        return
-    server = StaticServer(published(scene, tmp_path / "site", viewer_folder))
-    yield server
-    server.close()
+    with served(request.param, scene, viewer_folder, tmp_path / "site") as server:
+        yield server
 
 
 def hues(pixels):

@@ -16,7 +16,7 @@ import { SIDE_WORDS } from "./masks";
 import type { SlateNet } from "./net";
 import { fillRing, ringStep } from "./ring";
 import { type SideRule, sideAhead, sideBegin, sideInside, sidePoint, sideStep } from "./sides";
-import type { Rows, Work } from "./work";
+import { putNormal, type Rows, type Work } from "./work";
 
 /** (2^depth + 1)^2 rows of `out` from row `place` on; row by row of patch f. */
 export function tessellate(
@@ -175,7 +175,6 @@ function innerPoint(a: Float64Array, p: number, row: number, out: Rows, o: numbe
   if (isSurface) innerNormal(a, p, row, out, o);
 }
 
-/** The unit normal of the two tangents; zero where they have no direction. */
 function innerNormal(a: Float64Array, p: number, row: number, { normals }: Rows, o: number): void {
   const ax = ahead(a, p, row);
   const ay = ahead(a, p + 1, row);
@@ -183,15 +182,7 @@ function innerNormal(a: Float64Array, p: number, row: number, { normals }: Rows,
   const bx = below(a, p, row);
   const by = below(a, p + 1, row);
   const bz = below(a, p + 2, row);
-  const x = ay * bz - az * by;
-  const y = az * bx - ax * bz;
-  const z = ax * by - ay * bx;
-  const length = Math.sqrt(x * x + y * y + z * z);
-  const share = length > 0 ? 1 / length : 0;
-  // The zero added makes -0 the other zero.
-  normals[3 * o] = x * share + 0;
-  normals[3 * o + 1] = y * share + 0;
-  normals[3 * o + 2] = z * share + 0;
+  putNormal(normals, o, ax, ay, az, bx, by, bz);
 }
 
 function ahead(a: Float64Array, i: number, row: number): number {

@@ -7,7 +7,7 @@
  * @module refine/slates/sides
  */
 import { LIMIT_SHARE, WORDS } from "./layout";
-import type { Rows } from "./work";
+import { putNormal, type Rows } from "./work";
 
 /** Of side k of a table of n by n: words to its first corner. */
 export function sideBegin(k: number, n: number): number {
@@ -98,15 +98,5 @@ export function sidePoint(
   for (let x = 0; x < 3; x++) applyRule(a, p + x, x, rule);
   for (let x = 0; x < 3; x++) positions[3 * o + x] = scratch[x]!;
   if (!isSurface) return;
-  const [ax, ay, az] = [scratch[3]!, scratch[4]!, scratch[5]!];
-  const [bx, by, bz] = [scratch[6]!, scratch[7]!, scratch[8]!];
-  const x = ay * bz - az * by;
-  const y = az * bx - ax * bz;
-  const z = ax * by - ay * bx;
-  const length = Math.sqrt(x * x + y * y + z * z);
-  const share = length > 0 ? 1 / length : 0;
-  // The zero added makes -0 the other zero.
-  normals[3 * o] = x * share + 0;
-  normals[3 * o + 1] = y * share + 0;
-  normals[3 * o + 2] = z * share + 0;
+  putNormal(normals, o, scratch[3]!, scratch[4]!, scratch[5]!, scratch[6]!, scratch[7]!, scratch[8]!);
 }

@@ -28,3 +28,25 @@ export function workOf({ ringStarts }: SlateNet, depth: number): Work {
   const rings = () => Array.from({ length: 4 }, () => new Float64Array(3 * (1 + longest)));
   return { slates: [slate(), slate()], rings: [rings(), rings()] };
 }
+
+/** Row o of normals: the unit normal of tangents a and b, zero where they have no direction. */
+export function putNormal(
+  normals: Column,
+  o: number,
+  ax: number,
+  ay: number,
+  az: number,
+  bx: number,
+  by: number,
+  bz: number,
+): void {
+  const x = ay * bz - az * by;
+  const y = az * bx - ax * bz;
+  const z = ax * by - ay * bx;
+  const length = Math.sqrt(x * x + y * y + z * z);
+  const share = length > 0 ? 1 / length : 0;
+  // The zero added makes -0 the other zero.
+  normals[3 * o] = x * share + 0;
+  normals[3 * o + 1] = y * share + 0;
+  normals[3 * o + 2] = z * share + 0;
+}
