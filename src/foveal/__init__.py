@@ -61,7 +61,10 @@ _HOMES = {
     "read": "foveal.scene.read",
     "render": "foveal.scene.render",
 }
-_ROOMS = ["base", "coding", "container", "lod", "mesh", "multires", "raster", "refine", "scene", "server"]
+_ROOMS = [
+    *("base", "coding", "container", "lod", "mesh", "multires"),
+    *("raster", "refine", "scene", "server", "shadows"),
+]
 
 
 def __getattr__(name: str) -> Any:

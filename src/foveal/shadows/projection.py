@@ -1,0 +1,44 @@
+"""How a light sees: from points of the world to pixels and depths of one shadow map."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Projection"]
+
+
+@dataclass(frozen=True, slots=True)
+class Projection:
+    """A map from the world to a shadow map's square [0, 1)² and its depths.
+
+    With (X, Y, Z, W) = `matrix` @ (x, y, z, 1), a point is at u = X / W to the right, v = Y / W and depth Z,
+    which is linear along the light's axis, from 0 to 1. Pixel (i, j) of a map of n pixels a side spans
+    i <= u n < i + 1, j <= v n < j + 1; its sample is the middle. Where W <= 0 a point is behind the light.
+
+    Attributes
+    ----------
+    matrix : (4, 4) float64
+        For parallel light, an oblique one too, the last row is 0 0 0 1.
+
+    Examples
+    --------
+    >>> straight_down = Projection(np.array([[0.1, 0, 0, 0], [0, 0.1, 0, 0], [0, 0, -0.1, 1], [0, 0, 0, 1]]))
+    >>> straight_down.project([[5, 2, 10], [0, 0, 0]])
+    array([[0.5, 0.2, 0. ],
+           [0. , 0. , 1. ]])
+    """
+
+    matrix: NDArray[np.float64]
+
+    @property
+    def is_parallel(self) -> bool:
+        """Whether the light is infinitely far away."""
+        return bool((self.matrix[3] == (0, 0, 0, 1)).all())
+
+    def project(self, points: ArrayLike, /) -> NDArray[np.float64]:
+        """(n, 3): u, v and depth of (n, 3) points; u and v are NaN behind the light."""
+        points = np.asarray(points, dtype=np.float64)
+        x, y, z, w = (points @ self.matrix[:, :3].T + self.matrix[:, 3]).T
+        w = np.where(w > 0, w, np.nan)
+        return np.stack([x / w, y / w, z], axis=-1)
