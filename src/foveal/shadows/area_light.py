@@ -99,6 +99,8 @@ class AreaLight:
                 f"the samples must be a grid of a power of two, so one of {', '.join(map(str, grids))}; "
                 f"got {self.samples}."
             )
+        if self.seed < 0:
+            raise FovealError(f"the seed must be 0 or more, got {self.seed}.")
         if self.size is not None:
             set_fields(self, size=(float(self.size[0]), float(self.size[1])))
 

@@ -278,12 +278,13 @@ def cone_window(
     nothing = FovealError("nothing lies in the light's cone. Turn it to the scene, or widen its angle.")
     if far <= 0:
         raise nothing
-    near = first * (1 - MARGIN) if first > NEAREST * far else NEAREST * far
+    is_all_ahead = first > NEAREST * far
+    near = max(first - MARGIN * (far - first), NEAREST * far)
     plane = (max(first, near) + far) / 2
     window = []
     for axis in (0, 1):
         low, high = -tangent, tangent
-        if near < first:
+        if is_all_ahead:
             pictures = [(seen.points[:, axis] - s) / ahead + s / plane for s in sorted({*shifts[axis]})]
             low = max(low, min(float(p.min()) for p in pictures))
             high = min(high, max(float(p.max()) for p in pictures))

@@ -38,7 +38,7 @@ def light_from_json(data: Any, /) -> Light:
         return _READERS[kind](data)
     except FovealError:
         raise
-    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise FovealError(f"the light is not told as it should be ({kind}: {error}).") from error
 
 

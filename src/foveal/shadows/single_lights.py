@@ -312,7 +312,7 @@ class Point(Single):
         # The scene lies within its box; where the light is outside, so much is free all around.
         low, high = seen[0].points.min(axis=0), seen[0].points.max(axis=0)
         free = float(np.maximum(low, -high).max())
-        depths = max(free * (1 - MARGIN), NEAREST * far), far
+        depths = max(free - MARGIN * (far - free), NEAREST * far), far
         square = ((-1.0, 1.0), (-1.0, 1.0))
         return tuple(through_window(face, square, depths, margin=margin) for face in seen)
 
