@@ -4,7 +4,19 @@ Based on: Scandolo, Bauszat, Eisemann. Compressed Multiresolution Hierarchies fo
 Shadows. Computer Graphics Forum 2016.
 """
 
+from .light import AreaLight, Directional, Light, Point, Spot, Sun, SunPath, light_from_json
 from .projection import Projection
 from .tree import Tree
 
-__all__ = ["Projection", "Tree"]
+__all__ = [
+    "AreaLight",
+    "Directional",
+    "Light",
+    "Point",
+    "Projection",
+    "Spot",
+    "Sun",
+    "SunPath",
+    "Tree",
+    "light_from_json",
+]
