@@ -4,6 +4,7 @@ Based on: Scandolo, Bauszat, Eisemann. Compressed Multiresolution Hierarchies fo
 Shadows. Computer Graphics Forum 2016.
 """
 
+from .build import build, intervals
 from .light import AreaLight, Directional, Light, Point, Spot, Sun, SunPath, light_from_json
 from .projection import Projection
 from .tree import Tree
@@ -18,5 +19,7 @@ __all__ = [
     "Sun",
     "SunPath",
     "Tree",
+    "build",
+    "intervals",
     "light_from_json",
 ]

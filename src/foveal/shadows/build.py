@@ -56,19 +56,20 @@ def build(
     Parameters
     ----------
     meshes : TriMesh or sequence of TriMesh
-        What casts. Closed parts cast as solids, whether they go through each other or not; open ones as sheets.
+        What casts. Closed parts cast as solids, whether they go through each other or not, open ones as
+        sheets.
     light : Light
         `Directional`, `Sun`, `Spot`, `Point`, or for a stack of maps `AreaLight`, `SunPath`.
     resolution : int
-        Pixels a side, a power of two from 2 to 2^20. Pixels are never all made: time and bytes follow the length
-        of silhouettes, and double where the side doubles.
+        Pixels a side, a power of two from 2 to 2^20. Pixels are never all made: time and bytes follow the
+        length of silhouettes, and double where the side doubles.
     method : {"optimal", "bottom-up", "top-down"}
         "optimal" keeps the fewest values (parsimony); the others are those of the paper, to compare with:
         "top-down" needs all pixels at once, so a side of 8,192 at most, and takes no stacks.
     exits : {"surface", "strict"}
-        Where a ray that meets an open part may be said to leave: "surface" just before the next surface, right
-        for all that casts itself; "strict" at once, right also for what moves in the air below a roof of one
-        sheet. Such parts then take about as many values as pixels.
+        Where a ray that meets an open part may be said to leave: "surface" just before the next surface,
+        right for all that casts itself; "strict" at once, right also for what moves in the air below a roof
+        of one sheet. Such parts then take about as many values as pixels.
     executor : Executor, optional
         Local threads by default. The result does not depend on it.
     progress : Progress
@@ -223,7 +224,8 @@ def _refuse_inside(casters: Casters, projections: tuple[Projection, ...]) -> Non
     if round(winding_number(casters, middle)) > 0:
         place = ", ".join(f"{x:.6g}" for x in middle)
         raise FovealError(
-            f"the light at ({place}) is inside a closed part of the model, where all is dark. Move it outside."
+            f"the light at ({place}) is inside a closed part of the model, where all is dark. "
+            "Move it outside."
         )
 
 

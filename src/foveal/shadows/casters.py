@@ -22,8 +22,8 @@ class Casters(NamedTuple):
     faces : (m, 3) int32
         Of three corners each.
     edges : (m, 3) int32
-        Number of the edge after each corner, from 1; negative where the face runs it from the higher to the lower
-        corner.
+        Number of the edge after each corner, from 1; negative where the face runs it from the higher to the
+        lower corner.
     is_closed : (m,) bool
         Whether the face is of a part that encloses: along each of its edges as many faces run one way as the
         other, so every line enters it as often as it leaves.
@@ -41,7 +41,7 @@ class Casters(NamedTuple):
 def casters_of(meshes: list[TriMesh], /) -> Casters:
     """Join meshes, make corners at one place one, and find the parts that are closed.
 
-    Parts are what hangs together by edges; a mesh of thousands of pieces has closed and open ones side by side.
+    Parts are what hangs together by edges; a mesh of thousands of pieces has closed ones beside open ones.
     """
     positions, faces = _welded(meshes)
     is_face = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
@@ -100,4 +100,5 @@ def _closed_parts(edges: NDArray[np.int64], is_even: NDArray[np.bool_]) -> NDArr
     count, part = connected_components(link, directed=False)
     is_closed = np.ones(count, bool)
     is_closed[part[faces:][~is_even]] = False
-    return is_closed[part[:faces]]
+    mine: NDArray[np.bool_] = is_closed[part[:faces]]
+    return mine
