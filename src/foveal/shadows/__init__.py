@@ -4,7 +4,9 @@ Based on: Scandolo, Bauszat, Eisemann. Compressed Multiresolution Hierarchies fo
 Shadows. Computer Graphics Forum 2016.
 """
 
+from .pack import Packed, pack
 from .projection import Projection
+from .shadow_map import ShadowMap
 from .tree import Tree
 
-__all__ = ["Projection", "Tree"]
+__all__ = ["Packed", "Projection", "ShadowMap", "Tree", "pack"]
