@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,9 @@ from .flat import flatten
 from .frames import checked_resolution
 from .light import Light
 from .projection import Projection
+from .shadow_map import ShadowMap
 from .topdown import tree_from_the_root
 from .tree import FAR, LEAF
-
-if TYPE_CHECKING:
-    from .shadow_map import ShadowMap
 
 __all__ = ["METHODS", "Exits", "Method", "build", "intervals"]
 
@@ -46,7 +44,7 @@ def build(
     exits: Exits = "surface",
     executor: Executor | None = None,
     progress: Progress = SILENT,
-) -> "ShadowMap":
+) -> ShadowMap:
     """Precompute the shadow map of a light, of any resolution, lossless for the test of every pixel's sample.
 
     A ray from the light through the middle of a pixel enters the model at one depth and leaves it at another.
