@@ -134,7 +134,7 @@ class _Scratch:
 def _work(hits: int, pixels_a_block: int, lists: int = 0) -> tiles.Work:
     return tiles.Work(
         lists=np.empty(lists, np.int32),
-        list_end=np.zeros(24, np.int64),
+        list_starts=np.zeros(24, np.int64),
         hits=np.empty(hits, np.int64),
         hit_count=np.empty(pixels_a_block, np.int64),
         lower=np.empty(pixels_a_block, np.int64),
