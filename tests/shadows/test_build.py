@@ -94,3 +94,14 @@ def test_how_often_a_point_is_enclosed():
     casters = casters_of([ball((0, 0, 0)), ball((0.5, 0, 0)), sheet((-3, -3), (3, 3), 0.2)])
     for point, times in (((0.3, 0, 0), 2), ((-0.8, 0, 0), 1), ((0, 0, 3), 0)):
         assert winding_number(casters, np.array(point, float)) == pytest.approx(times, abs=1e-9)
+
+
+def test_more_nodes_than_memory_holds(monkeypatch):
+    """Strictly, a sheet askew to the light takes as many values as pixels."""
+    monkeypatch.setattr("foveal.shadows.construct.MOST_NODES", 1 << 19)
+    roof = sheet((-1, -1), (1, 1), 0.0)
+    light = Directional((0.3, 0.2, -1))
+    assert build(roof, light, resolution=1 << 11).trees
+    for more in (0, 2):
+        with pytest.raises(FovealError, match="lower resolution"):
+            build(roof, light, resolution=1 << (11 + more), exits="strict")

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -119,7 +120,8 @@ def build(
         if light.is_stack:
             made = [
                 tree_of_stack(
-                    *(flats, len(projections), levels),
+                    [partial(flatten, casters, projection) for projection in projections],
+                    levels,
                     executor=pool,
                     is_strict=is_strict,
                     most=most,
