@@ -47,6 +47,11 @@ def test_what_is_seen_from_the_edge_casts_nothing():
         build(upright, DOWN, resolution=16)
 
 
+def test_one_sheet_alone_shades_nothing_of_itself():
+    shadow = build(sheet((-1, -1), (1, 1), 0.0), Directional((0.3, 0.2, -1)), resolution=64)
+    assert shadow.lookup([[0, 0, 0], [0.5, 0, 0]]).all()
+
+
 def test_phases_are_timed():
     shadow = build(solids(), DOWN, resolution=64)
     assert list(shadow.times) == ["joining", "projecting", "tracing"]

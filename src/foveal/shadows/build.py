@@ -141,7 +141,8 @@ def build(
                 for flat in flats
             ]
     times["tracing"] -= times["projecting"]
-    if all(tree.root == LEAF and tree.values[0] == FAR for tree in made):
+    is_all_lit = all(tree.root == LEAF and tree.values[0] == FAR for tree in made)
+    if is_all_lit and not any(len(flatten(casters, projection).corners) for projection in projections):
         raise FovealError("the light meets nothing: no part of the model is where it shines.")
     return ShadowMap(light, projections, tuple(made), times=times)
 

@@ -24,8 +24,8 @@ from .tree import Tree
 __all__ = ["pixels_of_triangles", "tree_of_pixels", "tree_of_stack", "tree_of_triangles"]
 
 MOST_NODES = 1 << 28
-"""Nodes under construction at most: 2.4 GB. A closed scene of 1.5 million triangles at a million pixels a side
-takes a quarter."""
+"""Nodes under construction at most: 2.4 GB. A closed scene of 1.5 million triangles at a million pixels
+a side takes a quarter."""
 _AHEAD = 8
 _CODES = 1 << 16
 _HITS = 1 << 14
