@@ -21,7 +21,7 @@ TOP = 1 << 24  # the interval is kept wider than this
 
 @inlined
 def code(coder, context, bit):
-    """Write `bit`, or read one in its place; `context` says which chances it is coded with. Returns the bit."""
+    """Write `bit`, or read one in its place, with the chances of a context; returns the bit."""
     state = coder.state
     quick, slow = np.int64(coder.quick[context]), np.int64(coder.slow[context])
     width = state[WIDTH]

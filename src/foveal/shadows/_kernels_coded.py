@@ -22,13 +22,13 @@ HAS = SPLIT + (1 << 14)  # 2^15: has it a value
 SAME = HAS + (1 << 15)  # 2^7: is the value that of a side
 IS_FAR = SAME + (1 << 7)  # 4
 BIT = IS_FAR + 4  # 9 * 16 while a guess holds, then 8
-STOP = BIT + 9 * 16 + 8  # 8 * 16: was this the last bit that is 1
-CONTEXTS = STOP + 8 * 16
+STOP = BIT + 9 * 16 + 8  # 8 * 8 * 16: was this the last bit that is 1
+CONTEXTS = STOP + 8 * 8 * 16
 
 
 @inlined
 def is_inside(child, side, dims):
-    """Whether the cell beyond a side of a child is a child of the same node; it is child ^ 1 << side % dims."""
+    """Whether the cell beyond a side of a child is a child of the same node: child ^ 1 << side % dims."""
     return (child >> side % dims & 1) != (side >= dims)
 
 
@@ -89,7 +89,8 @@ def code_bits(coder, value, first, second):
         lost_first += lost_first > 0 or bit != first >> place & 1
         lost_second += lost_second > 0 or bit != second >> place & 1
         if bit:
-            context = STOP + 16 * min(lost_first, lost_second, 7) + depth
+            longest = min(max(lost_first, lost_second), 7)
+            context = STOP + 16 * (8 * min(lost_first, lost_second, 7) + longest) + depth
             if code(coder, context, value & ((1 << place) - 1) == 0):
                 break
     return max(read, 1)
@@ -142,7 +143,7 @@ def number(masks, dims, numbers):
 
 @kernel
 def descend(level, numbers, dims, below):
-    """What the level below knows before its own masks: values from above, and which nodes are beside which."""
+    """What the level below knows before its own masks: values from above, what is beside what."""
     for node in range(len(level.masks)):
         for child in range(1 << dims):
             cell = (node << dims) + child

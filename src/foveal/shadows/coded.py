@@ -10,35 +10,22 @@ against those of the greedy tree in memory, for a closed scene at 4096² and an 
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
-from foveal.coding.binary import (
-    BYTES_A_BIT,
-    MOST_BITS_A_BYTE,
-    Chances,
-    Coder,
-    drain,
-    finish,
-    is_at_end,
-    reader,
-    writer,
-)
+from foveal.coding.binary import MOST_BITS_A_BYTE, Chances, finish, is_at_end, reader, writer
 
-from . import _kernels_coded as kernels
-from .tree import FAR, INNER, LEAF, Tree
+from ._kernels_coded import CONTEXTS
+from .coded_walk import Walk, room
+from .tree import INNER, LEAF, Tree
 
 __all__ = ["MOST_LEVELS", "Counts", "coarser", "decode", "encode", "parts_of"]
 
 MOST_LEVELS = 24
 SMALL_PART = 1 << 12
 """Nodes with children: levels are put into one chunk while they have no more of them together."""
-
-_SLICE = 1 << 12  # nodes that are written before their bytes are drained
-_MOST_BITS_A_VALUE = kernels.MOST_SIDES + 1 + 2 * 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +76,8 @@ def parts_of(trees: Iterable[Tree], /) -> list[int]:
     Examples
     --------
     >>> from foveal.shadows.tree import Tree
-    >>> blank = Tree(3, 4, LEAF, np.zeros(0, np.uint16), np.zeros(4, int), np.zeros(1, np.uint32), np.ones(5, int))
+    >>> no_masks = (np.zeros(0, np.uint16), np.zeros(4, int))
+    >>> blank = Tree(3, 4, LEAF, *no_masks, np.zeros(1, np.uint32), np.array([0, 1, 1, 1, 1]))
     >>> parts_of([blank])
     [3]
     """
@@ -116,11 +104,11 @@ def encode(tree: Tree, parts: Sequence[int], /) -> list[bytes]:
     counts = Counts.of(tree)
     if not counts.is_possible:
         raise ValueError("a tree's starts do not fit its levels")
-    walk = _Walk(counts)
-    chances = Chances.even(kernels.CONTEXTS)
+    walk = Walk(counts.levels, counts.children, counts.root)
+    chances = Chances.even(CONTEXTS)
     chunks = []
     for begin, end in _stages(parts):
-        coder = writer(chances, _room(tree.children))
+        coder = writer(chances, room(tree.children))
         data = bytearray()
         for stage in range(begin, end):
             masks = (
@@ -152,8 +140,8 @@ def decode(counts: Counts, parts: Sequence[int], chunks: Sequence[bytes], /) -> 
     """
     if not counts.is_possible:
         raise damaged()
-    walk = _Walk(counts)
-    chances = Chances.even(kernels.CONTEXTS)
+    walk = Walk(counts.levels, counts.children, counts.root)
+    chances = Chances.even(CONTEXTS)
     all_masks: list[NDArray[np.uint16]] = []
     all_values: list[NDArray[np.uint32]] = []
     for (begin, end), data in zip(_stages(parts[: len(chunks)]), chunks, strict=True):
@@ -220,87 +208,6 @@ def damaged() -> FovealError:
     return FovealError("a shadow tree is damaged. Copy or build the file again.")
 
 
-class _Level(NamedTuple):
-    """Nodes with children of one level; (nodes, sides) what is beside them."""
-
-    masks: NDArray[np.uint16]
-    held: NDArray[np.uint32]
-    is_inner: NDArray[np.uint8]
-    cells: NDArray[np.uint32]  # (nodes * children,) the last value on the way to each child, as known
-    links: NDArray[np.int32]  # which node of the level is there, -1 where none is
-    outer: NDArray[np.uint32]  # the value there where none is
-
-    @classmethod
-    def blank(cls, masks: NDArray[np.uint16], dims: int, value: int) -> "_Level":
-        nodes = len(masks)
-        return cls(
-            masks,
-            np.full(nodes, value, np.uint32),
-            np.ones(nodes, np.uint8),
-            np.full(nodes << dims, value, np.uint32),
-            np.full((nodes, 2 * dims), -1, np.int32),
-            np.full((nodes, 2 * dims), value, np.uint32),
-        )
-
-
-class _Walk:
-    """A way down a tree, stage by stage: the root's value, then masks of a level and values of the next."""
-
-    def __init__(self, counts: Counts) -> None:
-        self.counts = counts
-        self.dims = counts.children.bit_length() - 1
-        self.stage = 0
-        self.root_value = FAR
-        self.above: _Level | None = None
-
-    def go(self, coder: Coder, masks: NDArray[np.uint16], values: NDArray[np.uint32]) -> tuple[bytes, Coder]:
-        """Write a stage or read it into `masks` and `values`; what was written, and the coder for what follows.
-
-        Raises
-        ------
-        ValueError
-            If they do not fit each other.
-        """
-        self.stage += 1
-        if self.stage == 1:
-            self.root_value = kernels.code_value(
-                coder, int(values[0]), FAR, np.zeros(0, np.int64), 0, int(self.counts.root == INNER)
-            )
-            values[0] = self.root_value
-            return b"", coder
-        level = self._below(masks)
-        data = bytearray()
-        at = 0
-        for begin in range(0, len(masks), _SLICE):
-            end = min(begin + _SLICE, len(masks))
-            is_last = int(self.stage - 1 == self.counts.levels)
-            at = kernels.code_nodes(level, values, at, begin, end, self.dims, is_last, coder)
-            if at < 0:
-                raise ValueError("masks and values do not fit each other")
-            if not coder.is_reading:
-                written, coder = drain(coder, _room(self.counts.children))
-                data += written
-        if at != len(values):
-            raise ValueError("masks and values do not fit each other")
-        self.above = level
-        return bytes(data), coder
-
-    def _below(self, masks: NDArray[np.uint16]) -> _Level:
-        """The level under the one before, of so many nodes."""
-        below = _Level.blank(masks, self.dims, self.root_value)
-        if self.above is not None:
-            numbers = np.empty(len(self.above.masks) << self.dims, np.int32)
-            if kernels.number(self.above.masks, self.dims, numbers) != len(masks):
-                raise ValueError("masks of two levels do not fit each other")
-            kernels.descend(self.above, numbers, self.dims, below)
-        return below
-
-
 def _stages(parts: Sequence[int]) -> Iterable[tuple[int, int]]:
     """Of each chunk, its first stage and the one after its last."""
     return zip([0, *(part + 1 for part in parts)], [part + 1 for part in parts], strict=False)
-
-
-def _room(children: int) -> int:
-    """Bytes that a slice can take."""
-    return int(BYTES_A_BIT * _SLICE * children * (2 + _MOST_BITS_A_VALUE))
