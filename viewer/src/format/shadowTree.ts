@@ -38,7 +38,8 @@ export function isPossible({ levels, children, root, masks, values }: Counts): b
   if (levels > 0 ? masks[0] !== Number(root === INNER) : root === INNER) return false;
   return masks.every(
     (nodes, level) =>
-      values[level + 1]! <= children * nodes && (level === levels - 1 || masks[level + 1]! <= children * nodes),
+      values[level + 1]! <= children * nodes &&
+      (level === levels - 1 || masks[level + 1]! <= children * nodes),
   );
 }
 
