@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 MOST_ANGLE = math.radians(170)
-"""Of a cone. At 170 degrees a pixel at the rim has a hundredth of the solid angle of one in the middle."""
+"""Of a cone. At 170 degrees a pixel at the rim has 0.0007 of the solid angle of one in the middle."""
 
 
 class Single:
