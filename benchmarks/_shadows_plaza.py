@@ -1,7 +1,7 @@
 """The plaza: a closed scene of about 1.5 million triangles, from a seed.
 
-Seven kinds of closed, detailed solids, 42 copies at random places, heights and turns, some through each other, on a
-closed slab.
+Seven kinds of closed, detailed solids, 42 copies at random places, heights and turns, some through each
+other, on a closed slab.
 """
 
 import numpy as np
@@ -54,7 +54,7 @@ def _slab() -> TriMesh:
 
 
 def _closed(points: Array, is_ball: bool) -> TriMesh:
-    """A grid (rows, columns, 3) that closes along its columns, and along its rows, or else has a pole at each end."""
+    """A grid (rows, columns, 3), closed along its columns, and along its rows or with a pole at each end."""
     rows, columns = points.shape[:2]
     i, j = np.meshgrid(np.arange(rows - is_ball), np.arange(columns), indexing="ij")
     down, right = (i + 1) % rows, (j + 1) % columns

@@ -26,10 +26,10 @@ def inside(p, plane, nearest):
 
 @kernel
 def cut(triangles, edges, nearest, next_edge, places, numbers, polygon, names, other, other_names):
-    """Cut (m, 3, 4) triangles; write (k, 3, 4) `places` and (k, 3) `numbers` of edges; k and the next free number.
+    """Cut (m, 3, 4) triangles into (k, 3, 4) `places`, (k, 3) `numbers` of edges; k and the next free number.
 
-    What two triangles share is cut at the same places, to the bit. Edges that arise get numbers from `next_edge`
-    on. With empty `places` it counts alone.
+    What two triangles share is cut at the same places, to the bit. Edges that arise get numbers from
+    `next_edge` on. With empty `places` it counts alone.
     """
     made = 0
     for t in range(len(triangles)):
@@ -90,7 +90,7 @@ def between(p, q, a, b, out):
 
 @kernel
 def is_beyond(triangles, nearest, out):
-    """0 for a triangle that is inside all planes, 1 for one to be cut, 2 for one wholly outside one of them."""
+    """0 for a triangle inside all planes, 1 for one to be cut, 2 for one wholly outside one of them."""
     for t in range(len(triangles)):
         out[t] = 0
         for plane in range(5):

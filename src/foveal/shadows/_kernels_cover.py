@@ -50,7 +50,7 @@ def common_interval(flat, triangles, begin, end, x0, y0, x1, y1, is_strict, work
 
 @lean
 def within_solids(flat, triangles, begin, end, x0, y0, x1, y1, work, back, sheet):
-    """Fronts of closed parts before all backs and sheets: rays that meet one first leave no sooner than a back."""
+    """Fronts of closed parts before all else: a ray that meets one first leaves no sooner than at a back."""
     before = min(back, sheet)
     low = np.int64(-1)
     work.near[0] = 0

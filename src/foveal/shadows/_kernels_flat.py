@@ -20,7 +20,8 @@ STEPS = 4294967296.0
 class Flat(NamedTuple):
     """Triangles over a map, each counter-clockwise and of an area above 0.
 
-    Places are in units of which `1 << bits` are a pixel; the sample of pixel i is at `(i << bits) + (1 << bits - 1)`.
+    Places are in units of which `1 << bits` are a pixel; the sample of pixel i is at
+    `(i << bits) + (1 << bits - 1)`.
     """
 
     corners: NDArray[np.int32]  # (m, 6) x0, y0, x1, y1, x2, y2
@@ -45,7 +46,7 @@ def edge_at(corners, t, a, b, x, y):
 
 @inlined
 def takes_ties(corners, t, a, b):
-    """Whether a place that is right on the edge from corner a to b is inside: of two neighbours just one says so."""
+    """Whether a place right on the edge from corner a to b is inside: of two neighbours just one says so."""
     dx = np.int64(corners[t, 2 * b]) - corners[t, 2 * a]
     dy = np.int64(corners[t, 2 * b + 1]) - corners[t, 2 * a + 1]
     return dy < 0 or (dy == 0 and dx > 0)
@@ -66,8 +67,8 @@ def covers(corners, t, x, y):
 def depth_at(flat, t, x, y):
     """Step of depth of a triangle's plane at a place, kept within that of its corners.
 
-    Every operation is monotone in x and y, rounding included: the steps at the corners of a rectangle bound all
-    within, exactly.
+    Every operation is monotone in x and y, rounding included: the steps at the corners of a rectangle bound
+    all within, exactly.
     """
     measure = (
         flat.planes[t, 0]

@@ -17,7 +17,8 @@ def agree(counts, low, high, children, most, ends, steps, out_low, out_high):
 
     The set of a node that costs the fewest stored values, whatever is above it (Hartigan 1973, for the
     parsimony of trees with many branches). With `most` = 1 the lowest interval alone is kept, which is the
-    greedy rule of Scandolo et al. 2016, algorithm 2. `ends` and `steps` are scratch for 2 KEPT children numbers.
+    greedy rule of Scandolo et al. 2016, algorithm 2. `ends` and `steps` are scratch, for 2 KEPT numbers of
+    each child.
     """
     if all_single(counts, children):
         lower, upper = low[0, 0], high[0, 0]
@@ -55,10 +56,10 @@ def agree(counts, low, high, children, most, ends, steps, out_low, out_high):
 @lean
 def all_single(counts, children):
     """Whether each set is one interval."""
+    many = 0
     for child in range(children):
-        if counts[child] != 1:
-            return False
-    return True
+        many += counts[child] != 1
+    return many == 0
 
 
 @lean
@@ -99,8 +100,8 @@ def keep(low, high, found, begin, end, most):
 @lean
 def shortest(low, high):
     """Fewest bits b, and v with low <= v <= high, such that v + 1 is a multiple of 2^(32 - b)."""
-    # All v + 1 in [low + 1, high + 1] with one value: its trailing zeros. Else the highest bit in which low and
-    # high + 1 differ is where the shortest multiple ends.
+    # The highest bit in which low and high + 1 differ is where the shortest multiple ends; where the bits
+    # from there up have zeros at their end, it is shorter still.
     top = high + 1
     differ = low ^ top
     bit = 0

@@ -32,7 +32,7 @@ def squares_of(codes, bounds, squares, at, stack):
     at += 1
     depth = 0
     stack[0] = root
-    bound = len(bounds)
+    bound = np.int64(len(bounds))
     for i in range(len(codes) - 1, -1, -1):
         count = np.int64(codes[i] & COUNT)
         bound -= 2 * count

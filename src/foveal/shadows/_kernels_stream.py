@@ -1,9 +1,9 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """A tree under construction as a stream of nodes: written from its leaves, read from its root.
 
-`codes` has, for each node, the number of intervals of its set of legal values, with IS_INNER where its children
-precede it; `bounds` the intervals. Children are written before parents and the last child first, so that
-read from its end the stream gives parents first and children in order.
+`codes` has, for each node, the number of intervals of its set of legal values, with IS_INNER where its
+children precede it; `bounds` the intervals. Children are written before parents and the last child first, so
+that read from its end the stream gives parents first and children in order.
 """
 
 from typing import NamedTuple
@@ -102,7 +102,7 @@ def push(up, level, count, kind, most):
 
 
 class Down(NamedTuple):
-    """A stream being read: values are chosen, and the lists of a Tree filled. Level 0 is the stream's root."""
+    """A stream being read: values are chosen, the lists of a Tree filled. Level 0 is the stream's root."""
 
     inherited: NDArray[np.int64]  # (levels + 1,) the value that holds above the nodes at the level
     child: NDArray[np.int64]  # (levels + 1,) number of the next child at the level
@@ -140,7 +140,7 @@ def descend(down, codes, bounds, children):
     stores the fewest values is the second half of parsimony (Hartigan 1973).
     """
     level, root = 0, 0
-    bound = len(bounds)
+    bound = np.int64(len(bounds))
     for at in range(len(codes) - 1, -1, -1):
         count = np.int64(codes[at] & COUNT)
         bound -= 2 * count
@@ -178,10 +178,10 @@ def descend(down, codes, bounds, children):
 @lean
 def is_within(bounds, begin, count, value):
     """Whether a value lies in one of the intervals."""
+    is_in = False
     for i in range(count):
-        if bounds[begin + 2 * i] <= value <= bounds[begin + 2 * i + 1]:
-            return True
-    return False
+        is_in |= bounds[begin + 2 * i] <= value <= bounds[begin + 2 * i + 1]
+    return is_in
 
 
 @lean

@@ -26,9 +26,7 @@ class Work(NamedTuple):
     """Scratch of one thread."""
 
     lists: NDArray[np.int32]  # triangles of the tiles on the way, one list after the other
-    list_end: NDArray[
-        np.int64
-    ]  # (levels + 2,) where the list of the tile of each level ends, from the second on
+    list_starts: NDArray[np.int64]  # (levels + 2,) of each level: the next one's is where it ends
     hits: NDArray[np.int64]  # what rays meet, depth << 2 | side: as much room for each pixel of a block
     hit_count: NDArray[np.int64]  # (BLOCK²,)
     lower: NDArray[np.int64]  # (BLOCK²,) intervals of a block's pixels, in the order of the tree
@@ -47,12 +45,12 @@ class Work(NamedTuple):
 def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_sparse, most):
     """Write the stream of one tile of 2^levels pixels a side; its triangles are `work.lists[:count]`.
 
-    `place` is the number of the tile among all of its size, in the order of the tree. Without `is_sparse` every
-    pixel is made. Returns DONE, NO_STREAM or NO_LIST, where there is no room.
+    `place` is the number of the tile among all of its size, in the order of the tree. Without `is_sparse`
+    every pixel is made. Returns DONE, NO_STREAM or NO_LIST, where there is no room.
     """
     unit = np.int64(1) << bits
-    work.list_end[0] = 0
-    work.list_end[1] = count
+    work.list_starts[0] = 0
+    work.list_starts[1] = count
     level = 0  # of the node at hand: the tile's is 0
     code = np.int64(place)  # number of the node at hand among all of its size
     while True:
@@ -62,11 +60,13 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
         span = ((np.int64(1) << size) - 1) * unit
         x0 = (even_bits(code) << size) * unit + (unit >> 1)
         y0 = (even_bits(code >> 1) << size) * unit + (unit >> 1)
-        begin, end = work.list_end[level], work.list_end[level + 1]
+        begin, end = work.list_starts[level], work.list_starts[level + 1]
         if level > 0:
-            if 2 * end - work.list_end[level - 1] > len(work.lists):
+            if 2 * begin - work.list_starts[level - 1] > len(
+                work.lists
+            ):  # all of the tile above may meet this one
                 return NO_LIST
-            begin, end = kept(flat, work, level, x0, y0, x0 + span, y0 + span)
+            end = kept(flat, work, level, x0, y0, x0 + span, y0 + span)
         room = len(work.hits) >> (2 * size)
         low, high = np.int64(FAR), np.int64(FAR)
         if begin < end:
@@ -99,8 +99,8 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
 def pixels_of_squares(flat, work, starts, squares, size, bits, is_strict, lower, upper):
     """Put the intervals of all pixels of squares of 2^size pixels a side into (side, side) arrays.
 
-    The triangles of a square are `work.lists[starts[square]:starts[square + 1]]`, and there is room for as many
-    hits a pixel.
+    The triangles of a square are `work.lists[starts[square]:starts[square + 1]]`, and there is room for as
+    many hits a pixel.
     """
     unit = np.int64(1) << bits
     room = len(work.hits) >> (2 * size)
@@ -129,16 +129,15 @@ def even_bits(code):
 
 @lean
 def kept(flat, work, level, x0, y0, x1, y1):
-    """Put behind the list of the tile above those of its triangles that meet this one: from where, to where."""
-    above, begin = 0 if level == 1 else work.list_end[level - 1], work.list_end[level]
-    end = begin
-    for i in range(above, begin):
+    """Put behind the list of the tile above what of it meets this one; where that ends."""
+    end = work.list_starts[level]
+    for i in range(work.list_starts[level - 1], work.list_starts[level]):
         t = work.lists[i]
         if meets(flat.corners, t, x0, y0, x1, y1):
             work.lists[end] = t
             end += 1
-    work.list_end[level + 1] = end
-    return begin, end
+    work.list_starts[level + 1] = end
+    return end
 
 
 @lean
@@ -172,8 +171,8 @@ def interval_of(hits, begin, count, is_strict):
     """The legal values of a pixel, from what its ray meets in any order, depth << 2 | side.
 
     Lowest is where the ray enters. A ray that enters a closed part leaves where it has met as many backs as
-    fronts: whatever it meets between is inside. Any other may be said to leave just before the next surface; or,
-    strictly, at once, which is right for what moves in the air below it as well.
+    fronts: whatever it meets between is inside. Any other may be said to leave just before the next surface;
+    or, strictly, at once, which is right for what moves in the air below it as well.
     """
     if count == 0:
         return np.int64(FAR), np.int64(FAR)
@@ -227,8 +226,8 @@ def push_block(up, work, level, size, most):
 def deal(flat, bits, size, levels, ends, out):
     """Deal triangles out to the 4^levels squares of 2^size pixels a side that they meet.
 
-    With an empty `out`, `ends` gets how many each square has; else it is where each square's begin in `out`, and
-    is advanced to where they end. Squares are numbered in the order of the tree.
+    With an empty `out`, `ends` gets how many each square has; else it is where each square's begin in `out`,
+    and is advanced to where they end. Squares are numbered in the order of the tree.
     """
     unit = np.int64(1) << bits
     half = unit >> 1

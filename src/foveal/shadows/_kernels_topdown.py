@@ -7,17 +7,30 @@ Based on: Scandolo, Bauszat, Eisemann 2016, algorithm 1. There a node sees the p
 covers; but its value then holds for the others below it too, which may not allow it. Here it sees all.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from foveal.base.jit import lean
 
 
+class Nodes(NamedTuple):
+    """The nodes of one level: those of node i are `starts[i]` to `starts[i + 1]` of the ends."""
+
+    keys: NDArray[
+        np.int64
+    ]  # ends of intervals, low << 1 | 1 or high + 1 << 1: at one place what is over first
+    pixels: NDArray[np.int32]  # whose they are, in the order of the tree
+    starts: NDArray[np.int64]
+    inherited: NDArray[np.int64]  # the value that holds above, -1 above the root
+    parents: NDArray[np.int64]  # which of the masks of the level above, -1 of the root
+    numbers: NDArray[np.int64]  # which child
+
+
 @lean
 def best_value(keys, begin, end, inherited):
-    """The depth that most of keys[begin:end] allow, how many do, and how many allow the inherited one.
-
-    A key is an end of an interval, low << 1 | 1 or high + 1 << 1: at one place what is over goes first.
-    """
+    """The depth that most of the intervals allow, how many do, and how many the inherited one."""
     depth, most, allowing = 0, 0, 0
     best = np.int64(0)
     for i in range(begin, end):
@@ -34,43 +47,40 @@ def best_value(keys, begin, end, inherited):
 
 
 @lean
-def level_of(keys, pixels, starts, inherited, parents, numbers, shift, masks, values, out):
-    """Decide the nodes of one level and deal their ends out to their children.
+def decide(nodes, shift, above, masks, values, below):
+    """Give the nodes of a level values and masks, and deal their ends out to their children, in `below`.
 
-    Nodes are `starts[i]:starts[i + 1]` of `keys` and `pixels`, with the value that holds above, the place of the
-    parent in `masks` (-1 of the root) and the number among its children. `shift` is of a child's number in a
-    pixel's, negative at the last level. `out` is as (keys, pixels, starts, inherited, parents, numbers) of the next
-    level, whose masks follow those so far in `masks`. Returns how many masks and values there are then, how
-    many nodes the next level has, and the kind of the last node.
+    `above` are the masks of the level above, where the nodes' kinds are entered; `shift` is of a child's
+    number in a pixel's. Returns how many masks and values there are, how many children, and the kind of the
+    last node.
     """
-    made_masks, made_values = masks[0][0], values[0][0]
-    count, at, kind = 0, 0, 0
-    for node in range(len(starts) - 1):
-        begin, end = starts[node], starts[node + 1]
-        value = inherited[node]
-        best, most, allowing = best_value(keys, begin, end, value)
+    made_masks, made_values, count, at, kind = 0, 0, 0, 0, 0
+    for node in range(len(nodes.starts) - 1):
+        begin, end = nodes.starts[node], nodes.starts[node + 1]
+        value = nodes.inherited[node]
+        best, most, allowing = best_value(nodes.keys, begin, end, value)
         kind = 0
         if most > allowing:
-            value = best
             kind = 1
-            values[1][made_values] = value
+            value = best
+            values[made_values] = value
             made_values += 1
         if max(most, allowing) < (end - begin) >> 1:
             kind |= 2
-            masks[1][made_masks] = 0
+            masks[made_masks] = 0
             for child in range(4):
-                out[2][count] = at
+                below.starts[count] = at
                 for i in range(begin, end):
-                    if pixels[i] >> shift & 3 == child:
-                        out[0][at] = keys[i]
-                        out[1][at] = pixels[i]
+                    if nodes.pixels[i] >> shift & 3 == child:
+                        below.keys[at] = nodes.keys[i]
+                        below.pixels[at] = nodes.pixels[i]
                         at += 1
-                out[3][count] = value
-                out[4][count] = made_masks
-                out[5][count] = child
+                below.inherited[count] = value
+                below.parents[count] = made_masks
+                below.numbers[count] = child
                 count += 1
-            out[2][count] = at
             made_masks += 1
-        if parents[node] >= 0:
-            masks[1][parents[node]] |= kind << (2 * numbers[node])
+        if nodes.parents[node] >= 0:
+            above[nodes.parents[node]] |= kind << (2 * nodes.numbers[node])
+    below.starts[count] = at
     return made_masks, made_values, count, kind

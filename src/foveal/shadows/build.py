@@ -3,7 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,9 @@ from .flat import flatten
 from .frames import checked_resolution
 from .light import Light
 from .projection import Projection
+from .shadow_map import ShadowMap
 from .topdown import tree_from_the_root
 from .tree import FAR, LEAF
-
-if TYPE_CHECKING:
-    from .shadow_map import ShadowMap
 
 __all__ = ["METHODS", "Exits", "Method", "build", "intervals"]
 
@@ -46,7 +44,7 @@ def build(
     exits: Exits = "surface",
     executor: Executor | None = None,
     progress: Progress = SILENT,
-) -> "ShadowMap":
+) -> ShadowMap:
     """Precompute the shadow map of a light, of any resolution, lossless for the test of every pixel's sample.
 
     A ray from the light through the middle of a pixel enters the model at one depth and leaves it at another.
@@ -56,19 +54,20 @@ def build(
     Parameters
     ----------
     meshes : TriMesh or sequence of TriMesh
-        What casts. Closed parts cast as solids, whether they go through each other or not; open ones as sheets.
+        What casts. Closed parts cast as solids, whether they go through each other or not, open ones as
+        sheets.
     light : Light
         `Directional`, `Sun`, `Spot`, `Point`, or for a stack of maps `AreaLight`, `SunPath`.
     resolution : int
-        Pixels a side, a power of two from 2 to 2^20. Pixels are never all made: time and bytes follow the length
-        of silhouettes, and double where the side doubles.
+        Pixels a side, a power of two from 2 to 2^20. Pixels are never all made: time and bytes follow the
+        length of silhouettes, and double where the side doubles.
     method : {"optimal", "bottom-up", "top-down"}
         "optimal" keeps the fewest values (parsimony); the others are those of the paper, to compare with:
         "top-down" needs all pixels at once, so a side of 8,192 at most, and takes no stacks.
     exits : {"surface", "strict"}
-        Where a ray that meets an open part may be said to leave: "surface" just before the next surface, right
-        for all that casts itself; "strict" at once, right also for what moves in the air below a roof of one
-        sheet. Such parts then take about as many values as pixels.
+        Where a ray that meets an open part may be said to leave: "surface" just before the next surface,
+        right for all that casts itself; "strict" at once, right also for what moves in the air below a roof
+        of one sheet. Such parts then take about as many values as pixels.
     executor : Executor, optional
         Local threads by default. The result does not depend on it.
     progress : Progress
@@ -223,7 +222,8 @@ def _refuse_inside(casters: Casters, projections: tuple[Projection, ...]) -> Non
     if round(winding_number(casters, middle)) > 0:
         place = ", ".join(f"{x:.6g}" for x in middle)
         raise FovealError(
-            f"the light at ({place}) is inside a closed part of the model, where all is dark. Move it outside."
+            f"the light at ({place}) is inside a closed part of the model, where all is dark. "
+            "Move it outside."
         )
 
 

@@ -22,11 +22,12 @@ class Casters(NamedTuple):
     faces : (m, 3) int32
         Of three corners each.
     edges : (m, 3) int32
-        Number of the edge after each corner, from 1; negative where the face runs it from the higher to the lower
-        corner.
+        Number of the edge after each corner, from 1; negative where the face runs it from the higher to the
+        lower corner.
     is_closed : (m,) bool
         Whether the face is of a part that encloses: along each of its edges as many faces run one way as the
-        other, so every line enters it as often as it leaves.
+        other, so every line enters it as often as it leaves. A face that is there from both sides is a sheet:
+        without both, edges are as even as before.
     edge_count : int
         The largest number of an edge.
     """
@@ -41,7 +42,7 @@ class Casters(NamedTuple):
 def casters_of(meshes: list[TriMesh], /) -> Casters:
     """Join meshes, make corners at one place one, and find the parts that are closed.
 
-    Parts are what hangs together by edges; a mesh of thousands of pieces has closed and open ones side by side.
+    Parts are what hangs together by edges; a mesh of thousands of pieces has closed ones beside open ones.
     """
     positions, faces = _welded(meshes)
     is_face = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
@@ -58,7 +59,7 @@ def casters_of(meshes: list[TriMesh], /) -> Casters:
         positions,
         faces,
         ((number + 1) * signs).astype(np.int32),
-        _closed_parts(number, is_even),
+        _closed_parts(number, is_even) & ~_both_sides(faces),
         count,
     )
 
@@ -90,6 +91,21 @@ def _welded(meshes: list[TriMesh]) -> tuple[NDArray[np.float64], NDArray[np.int3
     return ordered[is_new], place[faces]
 
 
+def _both_sides(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Of each face, whether one of the same corners is there that runs them the other way round."""
+    first = faces.argmin(axis=1)
+    rows = np.arange(len(faces))
+    a, b, c = (faces[rows, (first + k) % 3].astype(np.int64) for k in range(3))
+    count = int(faces.max(initial=0)) + 1
+    is_turned = b > c
+    _, number = np.unique((a * count + np.minimum(b, c)), return_inverse=True)
+    _, number = np.unique(number * np.int64(count) + np.maximum(b, c), return_inverse=True)
+    from_one = np.bincount(number, ~is_turned) > 0
+    from_other = np.bincount(number, is_turned) > 0
+    both: NDArray[np.bool_] = (from_one & from_other)[number]
+    return both
+
+
 def _closed_parts(edges: NDArray[np.int64], is_even: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Of each face, whether all edges of its part are even; faces that share an edge are of one part."""
     faces = len(edges)
@@ -100,4 +116,5 @@ def _closed_parts(edges: NDArray[np.int64], is_even: NDArray[np.bool_]) -> NDArr
     count, part = connected_components(link, directed=False)
     is_closed = np.ones(count, bool)
     is_closed[part[faces:][~is_even]] = False
-    return is_closed[part[:faces]]
+    mine: NDArray[np.bool_] = is_closed[part[:faces]]
+    return mine

@@ -106,7 +106,13 @@ class _Scratch:
         *options: int,
     ) -> Part:
         # Of its own, so that what is read again and again is together.
-        own = Flat(*(np.ascontiguousarray(a[triangles]) for a in flat[:-1]), flat.lens)
+        own = flat._replace(
+            corners=flat.corners[triangles],
+            planes=flat.planes[triangles],
+            depths=flat.depths[triangles],
+            edges=flat.edges[triangles],
+            sides=flat.sides[triangles],
+        )
         count = len(triangles)
         while 2 * count > self._lists or count > self._hits:
             self._lists *= 2
@@ -128,7 +134,7 @@ class _Scratch:
 def _work(hits: int, pixels_a_block: int, lists: int = 0) -> tiles.Work:
     return tiles.Work(
         lists=np.empty(lists, np.int32),
-        list_end=np.zeros(24, np.int64),
+        list_starts=np.zeros(24, np.int64),
         hits=np.empty(hits, np.int64),
         hit_count=np.empty(pixels_a_block, np.int64),
         lower=np.empty(pixels_a_block, np.int64),
@@ -167,7 +173,10 @@ def pixels_of_triangles(
 def tree_of_pixels(
     lower: NDArray[np.int64], upper: NDArray[np.int64], /, *, executor: Executor, most: int = KEPT
 ) -> Tree:
-    """The tree of a map from the legal interval of each pixel, (side, side), or of a stack, (images, side, side)."""
+    """The tree of a map from its pixels' intervals, (side, side), or of a stack from (images, side, side).
+
+    Both ends are legal.
+    """
     children = 8 if lower.ndim == 3 else 4
     levels = lower.shape[-1].bit_length() - 1
     shape = (-1, *lower.shape[-2:])

@@ -12,7 +12,7 @@ from .tree import FAR, STEPS
 __all__ = ["PLACE_BITS", "flatten"]
 
 PLACE_BITS = 30
-"""Places along the side of a map are 2^30: at 2^20 pixels a side 1,024 a pixel; products of two fit an int64."""
+"""There are 2^30 places along a map's side: 1,024 a pixel at 2^20 pixels; products of two fit an int64."""
 
 
 def flatten(casters: Casters, projection: Projection, /) -> Flat:
@@ -86,7 +86,8 @@ def _cut_apart(
 
 def _doubled_area(corners: NDArray[np.int64]) -> NDArray[np.int64]:
     x0, y0, x1, y1, x2, y2 = corners.T
-    return (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    doubled: NDArray[np.int64] = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    return doubled
 
 
 def _planes(

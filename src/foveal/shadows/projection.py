@@ -52,7 +52,7 @@ class Projection:
     def eye(self) -> NDArray[np.float64]:
         """(3,): where the light is, which only light from a place can say."""
         rows = self.matrix[[0, 1, 3]]
-        return np.linalg.solve(rows[:, :3], -rows[:, 3])
+        return np.linalg.solve(rows[:, :3], -rows[:, 3]).astype(np.float64, copy=False)
 
     def project(self, points: ArrayLike, /) -> NDArray[np.float64]:
         """(n, 3): u, v and depth of (n, 3) points; u and v are NaN behind the light."""

@@ -1,7 +1,5 @@
 """The tree of a map from the root down, as published, for comparison: it needs all pixels at once."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,57 +26,47 @@ def tree_from_the_root(lower: NDArray[np.uint32], upper: NDArray[np.uint32], /) 
     """
     side = len(lower)
     levels = side.bit_length() - 1
-    level: Any = _sorted_ends(lower, upper)
-    starts, inherited = np.array([0, 2 * side * side]), np.array([-1])
-    level = (*level, starts, inherited, np.array([-1]), np.array([0]))
-    # A list of one array, so that a kernel can say how much of it is taken.
+    keys, pixels = _sorted_ends(lower, upper)
+    one = np.full(1, -1)
+    nodes = kernels.Nodes(keys, pixels, np.array([0, len(keys)]), one, one, np.zeros(1, np.int64))
     masks: list[NDArray[np.uint16]] = []
     values: list[NDArray[np.uint32]] = []
     root = 0
-    parents = np.empty(0, np.uint16)
-    for depth in range(levels + 1):
-        nodes = len(level[2]) - 1
-        room = 4 * nodes
-        out = (
-            np.empty(len(level[0]), np.int64),
-            np.empty(len(level[0]), np.int32),
-            *(np.empty(room + 1, np.int64) for _ in range(4)),
+    for level in range(levels + 1):
+        count = len(nodes.inherited)
+        below = _room(len(nodes.keys), 4 * count)
+        mine, found = np.empty(count, np.uint16), np.empty(count, np.uint32)
+        above = masks[-1] if masks else np.empty(0, np.uint16)
+        made, valued, children, kind = kernels.decide(
+            nodes, 2 * (levels - 1 - level), above, mine, found, below
         )
-        mine = np.concatenate([parents, np.empty(nodes, np.uint16)])
-        found = np.empty(nodes, np.uint32)
-        zero = np.zeros(1, np.int64)
-        made, valued, count, kind = kernels.level_of(
-            *level,
-            2 * (levels - 1 - depth),
-            (np.full(1, len(parents)), mine),
-            (zero, found),
-            out,
-        )
-        if depth == 0:
-            root = kind
-        else:
-            masks.append(mine[: len(parents)])
+        root = kind if level == 0 else root
+        masks.append(mine[:made])
         values.append(found[:valued])
-        parents = mine[len(parents) : made].copy()
-        level = (
-            *(array[: out[2][count] if count else 0] for array in out[:2]),
-            out[2][: count + 1],
-            out[3][:count],
-            out[4][:count] - (made - len(parents)),
-            out[5][:count],
+        nodes = kernels.Nodes(
+            below.keys[: below.starts[children]],
+            below.pixels[: below.starts[children]],
+            below.starts[: children + 1],
+            below.inherited[:children],
+            below.parents[:children],
+            below.numbers[:children],
         )
-        if count == 0:
-            break
-    masks += [np.empty(0, np.uint16)] * (levels - len(masks))
-    values += [np.empty(0, np.uint32)] * (levels + 1 - len(values))
     return Tree(
         levels=levels,
         children=4,
         root=root,
-        masks=np.concatenate([*masks, np.empty(0, np.uint16)]),
-        mask_starts=np.cumsum([0, *map(len, masks)]),
+        masks=np.concatenate(masks),
+        mask_starts=np.cumsum([0, *map(len, masks[:-1])]),
         values=np.concatenate(values),
         value_starts=np.cumsum([0, *map(len, values)]),
+    )
+
+
+def _room(ends: int, nodes: int) -> kernels.Nodes:
+    return kernels.Nodes(
+        np.empty(ends, np.int64),
+        np.empty(ends, np.int32),
+        *(np.empty(count, np.int64) for count in (nodes + 1, nodes, nodes, nodes)),
     )
 
 
