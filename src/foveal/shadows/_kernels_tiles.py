@@ -26,9 +26,7 @@ class Work(NamedTuple):
     """Scratch of one thread."""
 
     lists: NDArray[np.int32]  # triangles of the tiles on the way, one list after the other
-    list_end: NDArray[
-        np.int64
-    ]  # (levels + 2,) where the list of the tile of each level ends, from the second on
+    list_starts: NDArray[np.int64]  # (levels + 2,) of each level: the next one's is where it ends
     hits: NDArray[np.int64]  # what rays meet, depth << 2 | side: as much room for each pixel of a block
     hit_count: NDArray[np.int64]  # (BLOCK²,)
     lower: NDArray[np.int64]  # (BLOCK²,) intervals of a block's pixels, in the order of the tree
@@ -51,8 +49,8 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
     every pixel is made. Returns DONE, NO_STREAM or NO_LIST, where there is no room.
     """
     unit = np.int64(1) << bits
-    work.list_end[0] = 0
-    work.list_end[1] = count
+    work.list_starts[0] = 0
+    work.list_starts[1] = count
     level = 0  # of the node at hand: the tile's is 0
     code = np.int64(place)  # number of the node at hand among all of its size
     while True:
@@ -62,11 +60,13 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
         span = ((np.int64(1) << size) - 1) * unit
         x0 = (even_bits(code) << size) * unit + (unit >> 1)
         y0 = (even_bits(code >> 1) << size) * unit + (unit >> 1)
-        begin, end = work.list_end[level], work.list_end[level + 1]
+        begin, end = work.list_starts[level], work.list_starts[level + 1]
         if level > 0:
-            if 2 * end - work.list_end[level - 1] > len(work.lists):
+            if 2 * begin - work.list_starts[level - 1] > len(
+                work.lists
+            ):  # all of the tile above may meet this one
                 return NO_LIST
-            begin, end = kept(flat, work, level, x0, y0, x0 + span, y0 + span)
+            end = kept(flat, work, level, x0, y0, x0 + span, y0 + span)
         room = len(work.hits) >> (2 * size)
         low, high = np.int64(FAR), np.int64(FAR)
         if begin < end:
@@ -129,16 +129,15 @@ def even_bits(code):
 
 @lean
 def kept(flat, work, level, x0, y0, x1, y1):
-    """Put behind the list of the tile above what of it meets this one: from where, to where."""
-    above, begin = 0 if level == 1 else work.list_end[level - 1], work.list_end[level]
-    end = begin
-    for i in range(above, begin):
+    """Put behind the list of the tile above what of it meets this one; where that ends."""
+    end = work.list_starts[level]
+    for i in range(work.list_starts[level - 1], work.list_starts[level]):
         t = work.lists[i]
         if meets(flat.corners, t, x0, y0, x1, y1):
             work.lists[end] = t
             end += 1
-    work.list_end[level + 1] = end
-    return begin, end
+    work.list_starts[level + 1] = end
+    return end
 
 
 @lean

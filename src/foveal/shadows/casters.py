@@ -26,7 +26,8 @@ class Casters(NamedTuple):
         lower corner.
     is_closed : (m,) bool
         Whether the face is of a part that encloses: along each of its edges as many faces run one way as the
-        other, so every line enters it as often as it leaves.
+        other, so every line enters it as often as it leaves. A face that is there from both sides is a sheet:
+        without both, edges are as even as before.
     edge_count : int
         The largest number of an edge.
     """
@@ -58,7 +59,7 @@ def casters_of(meshes: list[TriMesh], /) -> Casters:
         positions,
         faces,
         ((number + 1) * signs).astype(np.int32),
-        _closed_parts(number, is_even),
+        _closed_parts(number, is_even) & ~_both_sides(faces),
         count,
     )
 
@@ -88,6 +89,21 @@ def _welded(meshes: list[TriMesh]) -> tuple[NDArray[np.float64], NDArray[np.int3
     place = np.empty(len(order), np.int32)
     place[order] = np.cumsum(is_new) - 1
     return ordered[is_new], place[faces]
+
+
+def _both_sides(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Of each face, whether one of the same corners is there that runs them the other way round."""
+    first = faces.argmin(axis=1)
+    rows = np.arange(len(faces))
+    a, b, c = (faces[rows, (first + k) % 3].astype(np.int64) for k in range(3))
+    count = int(faces.max(initial=0)) + 1
+    is_turned = b > c
+    _, number = np.unique((a * count + np.minimum(b, c)), return_inverse=True)
+    _, number = np.unique(number * np.int64(count) + np.maximum(b, c), return_inverse=True)
+    from_one = np.bincount(number, ~is_turned) > 0
+    from_other = np.bincount(number, is_turned) > 0
+    both: NDArray[np.bool_] = (from_one & from_other)[number]
+    return both
 
 
 def _closed_parts(edges: NDArray[np.int64], is_even: NDArray[np.bool_]) -> NDArray[np.bool_]:
