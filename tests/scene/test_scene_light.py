@@ -80,8 +80,9 @@ def test_it_is_published_under_a_name_of_its_own(tmp_path, lit, viewer, make_fov
     assert back.light.read_bytes() == scene.light.read_bytes()
     clash = Scene("two", (Layer("Shadow", make_fov(tmp_path / "a.fov")),), light=scene.light)
     assert list(asset_names(clash).values()) == ["Shadow.fov", "shadow-2.fov"]
-    with pytest.raises(FovealError, match=r"the scene's own light\.fov"):
-        publish(scene, tmp_path / "data", viewer=viewer, force=True)
+    itself = Scene("lit", scene.layers, light=back.light)
+    with pytest.raises(FovealError, match=r"the scene's own shadow\.fov"):
+        publish(itself, site, viewer=viewer, force=True)
 
 
 def test_a_lone_mesh_gets_a_light_beside_it(tmp_path, fov, lit, viewer, shadow_file, monkeypatch):
