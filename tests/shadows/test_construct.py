@@ -186,7 +186,7 @@ def test_a_stack_is_legal_in_every_image(pool):
     casters = casters_of(mixed())
     directions = [(0.4 + 0.02 * i, 0.3, -0.8) for i in range(5)]
     flats = [flatten(casters, Directional(d).projections(casters.positions, 32)[0]) for d in directions]
-    tree = tree_of_stack(iter(flats), 5, 5, executor=pool)
+    tree = tree_of_stack([lambda flat=flat: flat for flat in flats], 5, executor=pool)
     assert tree.children == 8
     bounds = [pixels_of_triangles(flat, 5, executor=pool) for flat in flats]
     lower, upper = (np.stack(b) for b in zip(*bounds, strict=True))

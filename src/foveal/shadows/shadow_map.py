@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,9 @@ from .moving import Moving
 from .pack import Packed, pack
 from .projection import Projection
 from .tree import Tree
+
+if TYPE_CHECKING:
+    from .light import Light, Point
 
 __all__ = ["MOST_FOOTPRINT", "ShadowMap"]
 
@@ -42,7 +45,7 @@ class ShadowMap:
         Maps of what moves, beside the trees; see `with_moving`.
     """
 
-    light: Any
+    light: "Light"
     projections: tuple[Projection, ...]
     trees: tuple[Tree, ...]
     times: dict[str, float] = field(default_factory=dict, compare=False, repr=False)
@@ -257,7 +260,7 @@ class ShadowMap:
             raise ValueError(f"image must be from 0 to {self.images - 1}, got {image}")
         if self.is_stack or len(self.projections) == 1:
             return [(image, slice(None))]
-        faces = self.light.face(points)
+        faces = cast("Point", self.light).face(points)
         return [(number, np.flatnonzero(faces == number)) for number in range(len(self.projections))]
 
     def _shares(
