@@ -1,4 +1,5 @@
 /** spec/shading.md, twice: as a function one can read and test, and as the shader that does it. */
+import { LIGHT_GLSL } from "./light/shader";
 
 export type Rgb = readonly [number, number, number];
 type Vector = readonly [number, number, number];
@@ -57,11 +58,18 @@ export function shadeFast(c: number, light: number): number {
 
 const number = (x: number): string => x.toFixed(8);
 
-/** GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 facing)`, colours from 0 to 1. */
+/**
+ * GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 facing, vec3 place)`, colours from 0 to 1, `place` from
+ * the eye. Where IS_LIT is defined the scene may have a light, with its shadows.
+ */
 export const SHADE_GLSL = /* glsl */ `
-vec3 shade(vec3 srgb, vec3 normal, vec3 facing) {
+${LIGHT_GLSL}
+vec3 shade(vec3 srgb, vec3 normal, vec3 facing, vec3 place) {
   vec3 n = dot(normal, facing) < 0.0 ? -normal : normal;
   float key = max(0.0, dot(n, vec3(${KEY.map(number).join(", ")})));
+#ifdef IS_LIT
+  if (lightIs) key = lightKey(n, facing, place, dFdx(place), dFdy(place));
+#endif
   float fill = 0.5 + 0.5 * n.y;
   float light = ${AMBIENT} + ${FILL} * fill + ${KEY_STRENGTH} * key;
   float root = sqrt(light);

@@ -1,11 +1,13 @@
 /** The picture: camera, layers, budgets and the one loop, which runs only while something changes. */
 import type { Vector3 } from "three";
+import type { LightInfo } from "../format/light";
 import type { Asset } from "../stream/asset";
 import type { Streamer } from "../stream/streamer";
 import { type Box, boxOf, type Frame, frameOf, halfBoxOf } from "./frame";
 import { FrameClock } from "./frameClock";
 import type { InsetPlace } from "./inset";
 import type { Layer, Look } from "./layer";
+import { SceneLight } from "./light/sceneLight";
 import { MotionBudget } from "./motionBudget";
 import { type CameraState, Navigation } from "./navigation";
 import { Painter } from "./painter";
@@ -40,6 +42,10 @@ export class Stage {
   /** Largest screen error in view, in pixels. */
   errorPx = Number.POSITIVE_INFINITY;
   isLost = false;
+  /** That of the scene, where it has one. */
+  light: SceneLight | undefined;
+  /** More of the light is on its way. */
+  isLightComing = false;
   #feed: PatchFeed | undefined;
   #handle = 0;
   #waiting: (() => void)[] = [];
@@ -83,6 +89,18 @@ export class Stage {
       this.painter.add(layer);
     }
     this.invalidate();
+  }
+
+  /** Have a light shine on all that is shown; some layers cast by an ordinary shadow map. */
+  shine(info: LightInfo, moving: readonly string[]): SceneLight {
+    const { painter } = this;
+    const { frame, halfBox } = this.navigation;
+    this.light = new SceneLight(painter.renderer, info, frame, halfBox, painter.isSoftware);
+    painter.shine(
+      this.light,
+      this.layers.filter(({ name }) => moving.includes(name)),
+    );
+    return this.light;
   }
 
   /** Draw a frame soon. */
@@ -160,10 +178,15 @@ export class Stage {
     this.#prepare();
     if (this.layers.length) this.#draw(); // before, the page's own background is enough
     const isFading = this.layers.some((layer) => layer.isFading);
-    clock.isOn = hasMoved || isFading || clock.isMoving || this.#feed?.hasMore === true;
+    const isBusy = this.light?.isBusy || this.#feed?.hasMore;
+    clock.isOn = hasMoved || isFading || clock.isMoving || isBusy === true;
     if (clock.isOn) this.invalidate();
-    else if (this.layers.length && this.layers.every((layer) => layer.isSettled)) this.#rest();
+    else if (this.#isSettled) this.#rest();
     this.options.onFrame(this);
+  }
+
+  get #isSettled(): boolean {
+    return this.layers.length > 0 && !this.isLightComing && this.layers.every((layer) => layer.isSettled);
   }
 
   /** All that a frame needs before it is drawn. */
@@ -175,6 +198,7 @@ export class Stage {
     this.#choose();
     for (const layer of this.layers) layer.show(this.clock.elapsed);
     this.#feed?.finish();
+    this.light?.advance(this.clock.isMoving);
   }
 
   /** Each layer its share of the budgets, what one leaves passed on to the next. */
@@ -227,6 +251,7 @@ export class Stage {
     this.#handle = 0;
     for (const layer of this.layers) layer.clear();
     this.#feed?.forgetAll();
+    this.painter.clear();
     this.options.onLost();
   }
 

@@ -1,0 +1,92 @@
+/** What the file of a shadow map says of its light (spec/container.md, kind `shadow`). */
+import type { Header } from "./container";
+import { Problem } from "./problem";
+
+export const SHADOW = "shadow";
+
+/** A row of a 4 x 4 matrix. */
+export type Row = readonly [number, number, number, number];
+/** As in spec/shadows.md: from the world to u, v, depth and W. */
+export type Projection = readonly [Row, Row, Row, Row];
+
+/** One projection, six of a point, or a stack: in order of time, or of places on an area. */
+export type LightKind = "one" | "cube" | "path" | "area";
+
+export interface LightInfo {
+  readonly kind: LightKind;
+  readonly projections: readonly Projection[];
+  /** The map has 2^levels pixels a side. */
+  readonly levels: number;
+  /** Of a stack; else 1. */
+  readonly images: number;
+  /** Least cosine to a spot's axis. */
+  readonly cosine: number | null;
+  /** What the file calls it, such as `sun`. */
+  readonly name: string;
+  /** ISO 8601, of sunlight. */
+  readonly begin: string | null;
+  readonly end: string | null;
+  /** Of a path, the clock of each image, in minutes of its day. */
+  readonly minutes: readonly number[] | null;
+}
+
+/** The kinds that have several projections; all others have one. */
+const KINDS: Readonly<Record<string, LightKind>> = { point: "cube", sun_path: "path", area: "area" };
+const CUBE_FACES = 6;
+const MOST_IMAGES = 4096;
+
+/**
+ * @param levels, images - As the header's parser found them.
+ * @throws Problem if it does not hold together.
+ */
+export function parseLight(header: Header, levels: number, images: number, name: string): LightInfo {
+  const { light } = header;
+  const told = typeof light === "object" && light !== null ? (light as Record<string, unknown>) : {};
+  const kind = KINDS[String(told.kind)] ?? "one";
+  const projections = Array.isArray(header.projections) ? header.projections : [];
+  const expected = kind === "cube" ? CUBE_FACES : kind === "one" ? 1 : images;
+  const isWhole = projections.length === expected && projections.every(isProjection);
+  if (!isWhole || expected > MOST_IMAGES) {
+    throw new Problem(
+      "damaged",
+      `${name} is damaged: its projections do not hold together. Copy or build it again.`,
+    );
+  }
+  return {
+    kind,
+    projections: projections as Projection[],
+    levels,
+    images: kind === "cube" ? 1 : expected,
+    cosine: told.kind === "spot" ? cosineOf(told.angle_degrees) : null,
+    name: String(told.kind),
+    begin: textOf(told.time ?? told.begin),
+    end: textOf(told.end),
+    minutes: kind === "path" ? minutesOf(told.times, images) : null,
+  };
+}
+
+function isProjection(value: unknown): value is Projection {
+  const isRow = (row: unknown): boolean =>
+    Array.isArray(row) && row.length === 4 && row.every((x) => Number.isFinite(x));
+  return Array.isArray(value) && value.length === 4 && value.every(isRow);
+}
+
+function textOf(value: unknown): string | null {
+  return typeof value === "string" ? value : null;
+}
+
+function cosineOf(degrees: unknown): number | null {
+  return typeof degrees === "number" && degrees > 0 ? Math.cos((degrees * Math.PI) / 360) : null;
+}
+
+/** By the clock of the first: `2026-06-21T08:00:00+02:00` is 480. Null if they are no times in order. */
+function minutesOf(times: unknown, images: number): number[] | null {
+  if (!Array.isArray(times) || times.length !== images) return null;
+  const clock = /T(\d\d):(\d\d)/.exec(String(times[0]));
+  if (!clock) return null;
+  const first = 60 * Number(clock[1]) + Number(clock[2]);
+  const begin = Date.parse(String(times[0]));
+  const minutes = times.map((time) => first + (Date.parse(String(time)) - begin) / 60_000);
+  const isRising = minutes.every((m, i) => Number.isFinite(m) && (i === 0 || m > minutes[i - 1]!));
+  return isRising ? minutes : null;
+}
