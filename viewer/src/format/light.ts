@@ -1,8 +1,11 @@
 /** What the file of a shadow map says of its light (spec/container.md, kind `shadow`). */
 import type { Header } from "./container";
+import type { Triple } from "./graph";
 import { Problem } from "./problem";
 
 export const SHADOW = "shadow";
+
+type Told = Readonly<Record<string, unknown>>;
 
 /** A row of a 4 x 4 matrix. */
 export type Row = readonly [number, number, number, number];
@@ -19,8 +22,10 @@ export interface LightInfo {
   readonly levels: number;
   /** Of a stack; else 1. */
   readonly images: number;
-  /** Least cosine to a spot's axis. */
-  readonly cosine: number | null;
+  /** Of an area, its middle: where it is (1 at the end), or the way to it (0). */
+  readonly middle: Row | null;
+  /** Of a spot, the way it looks, and the least cosine to that. */
+  readonly cone: { readonly axis: Triple; readonly cosine: number } | null;
   /** What the file calls it, such as `sun`. */
   readonly name: string;
   /** ISO 8601, of sunlight. */
@@ -41,7 +46,8 @@ const MOST_IMAGES = 4096;
  */
 export function parseLight(header: Header, levels: number, images: number, name: string): LightInfo {
   const { light } = header;
-  const told = typeof light === "object" && light !== null ? (light as Record<string, unknown>) : {};
+  const told = isObject(light) ? light : {};
+  const source = isObject(told.light) ? told.light : told; // of an area, what it is around
   const kind = KINDS[String(told.kind)] ?? "one";
   const projections = Array.isArray(header.projections) ? header.projections : [];
   const expected = kind === "cube" ? CUBE_FACES : kind === "one" ? 1 : images;
@@ -57,7 +63,8 @@ export function parseLight(header: Header, levels: number, images: number, name:
     projections: projections as Projection[],
     levels,
     images: kind === "cube" ? 1 : expected,
-    cosine: told.kind === "spot" ? cosineOf(told.angle_degrees) : null,
+    middle: kind === "area" ? middleOf(source) : null,
+    cone: coneOf(source),
     name: String(told.kind),
     begin: textOf(told.time ?? told.begin),
     end: textOf(told.end),
@@ -75,8 +82,26 @@ function textOf(value: unknown): string | null {
   return typeof value === "string" ? value : null;
 }
 
-function cosineOf(degrees: unknown): number | null {
-  return typeof degrees === "number" && degrees > 0 ? Math.cos((degrees * Math.PI) / 360) : null;
+function middleOf({ position, direction }: Told): Row | null {
+  if (isTriple(position)) return [...position, 1];
+  if (!isTriple(direction)) return null;
+  const size = -Math.hypot(...direction);
+  return [direction[0] / size, direction[1] / size, direction[2] / size, 0];
+}
+
+function coneOf({ kind, position, target, angle_degrees }: Told): LightInfo["cone"] {
+  if (kind !== "spot" || !isTriple(position) || !isTriple(target)) return null;
+  if (typeof angle_degrees !== "number" || !(angle_degrees > 0)) return null;
+  const axis = target.map((t, a) => t - position[a]!) as unknown as Triple;
+  return { axis, cosine: Math.cos((angle_degrees * Math.PI) / 360) };
+}
+
+function isObject(value: unknown): value is Told {
+  return typeof value === "object" && value !== null;
+}
+
+function isTriple(value: unknown): value is Triple {
+  return Array.isArray(value) && value.length === 3 && value.every((x) => Number.isFinite(x));
 }
 
 /** By the clock of the first: `2026-06-21T08:00:00+02:00` is 480. Null if they are no times in order. */

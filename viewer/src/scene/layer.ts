@@ -8,7 +8,7 @@
 import type { Camera, Group, PerspectiveCamera } from "three";
 import type { Triple } from "../format/graph";
 import type { BackgroundColours } from "./background";
-import type { LightUniforms } from "./light/shader";
+import type { LightShader } from "./light/shader";
 
 /** What a picture may cost, or does. */
 export interface Cost {
@@ -75,8 +75,8 @@ export interface Layer {
   dress(look: Look): void;
   /** What is drawn next is drawn for this. */
   wear(pass: Pass): void;
-  /** The scene's light shines on it from now on. */
-  lightBy(uniforms: LightUniforms): void;
+  /** So the scene's light shines on it from now on. */
+  lightBy(light: LightShader): void;
   /** What is drawn next is seen by this camera. */
   follow(camera: Camera): void;
   /** The bounding spheres of what is chosen, in the scene's frame. */

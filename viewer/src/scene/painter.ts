@@ -70,10 +70,14 @@ export class Painter {
    */
   shine(light: SceneLight, moving: readonly Layer[]): void {
     this.#light = light;
-    const { solid, fading, cast } = this.materials;
-    lightBy(light.uniforms, [solid, fading, cast]);
-    for (const layer of this.layers) layer.lightBy(light.uniforms);
     if (moving.length) this.#moving = { map: new MovingMap(this.#renderer, light, moving), layers: moving };
+    light.onChange = () => this.#dressByLight(light);
+  }
+
+  #dressByLight(light: SceneLight): void {
+    const { solid, fading, cast } = this.materials;
+    lightBy(light, [solid, fading, cast]);
+    for (const layer of this.layers) layer.lightBy(light);
   }
 
   set look(look: Look) {

@@ -6,7 +6,7 @@ import type { Problem } from "../format/problem";
 import type { RefinementFigures, RefinementSource } from "../stream/refinement";
 import type { Box, Frame } from "./frame";
 import type { Cost, FaceColours, Layer, Look, Pass } from "./layer";
-import { type LightUniforms, lightBy } from "./light/shader";
+import { type LightShader, lightBy } from "./light/shader";
 import { makeRefinedMaterials } from "./refinedMaterial";
 import { RefinedPlace } from "./refinedPlace";
 import { SlotMesh } from "./slotMesh";
@@ -150,9 +150,9 @@ export class RefinedLayer implements Layer {
     this.#materials.surface.polygonOffset = isWireframe;
   }
 
-  lightBy(uniforms: LightUniforms): void {
+  lightBy(light: LightShader): void {
     const { surface, tagged, cast } = this.#materials;
-    lightBy(uniforms, [surface, tagged, cast]);
+    lightBy(light, [surface, tagged, cast]);
   }
 
   #prepare(hasInset: boolean): void {

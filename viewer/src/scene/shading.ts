@@ -66,9 +66,10 @@ export const SHADE_GLSL = /* glsl */ `
 ${LIGHT_GLSL}
 vec3 shade(vec3 srgb, vec3 normal, vec3 facing, vec3 place) {
   vec3 n = dot(normal, facing) < 0.0 ? -normal : normal;
-  float key = max(0.0, dot(n, vec3(${KEY.map(number).join(", ")})));
 #ifdef IS_LIT
-  if (lightIs) key = lightKey(n, facing, place, dFdx(place), dFdy(place));
+  float key = lightKey(n, facing, place, dFdx(place), dFdy(place));
+#else
+  float key = max(0.0, dot(n, vec3(${KEY.map(number).join(", ")})));
 #endif
   float fill = 0.5 + 0.5 * n.y;
   float light = ${AMBIENT} + ${FILL} * fill + ${KEY_STRENGTH} * key;

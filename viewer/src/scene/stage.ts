@@ -29,6 +29,9 @@ export type Part = { readonly name: string; readonly isVisible: boolean } & (
   | { readonly box: Box; readonly makeLayer: (frame: Frame) => Layer }
 );
 
+/** Coarser surfaces than this, in pixels, may be in their own finer ones' shadow; they do not stay. */
+const MOST_LIFT_PX = 8;
+
 export class Stage {
   readonly navigation: Navigation;
   readonly painter: Painter;
@@ -198,7 +201,16 @@ export class Stage {
     this.#choose();
     for (const layer of this.layers) layer.show(this.clock.elapsed);
     this.#feed?.finish();
-    this.light?.advance(this.clock.isMoving);
+    this.#prepareLight();
+  }
+
+  #prepareLight(): void {
+    const { light, navigation, clock } = this;
+    if (!light) return;
+    light.advance(clock.isMoving);
+    const pixelsPerRadian = this.canvas.height / (2 * Math.tan((navigation.camera.fov * Math.PI) / 360));
+    const errorPx = Math.max(this.targetPx, Math.min(this.errorPx, MOST_LIFT_PX));
+    light.lift = errorPx / pixelsPerRadian;
   }
 
   /** Each layer its share of the budgets, what one leaves passed on to the next. */

@@ -52,9 +52,9 @@ export class MovingMap {
     this.#camera.matrixAutoUpdate = false;
     this.#camera.matrixWorldAutoUpdate = false;
     const { uniforms } = light;
-    uniforms.movingIs.value = true;
     uniforms.movingPixels.value = this.#pixels;
     uniforms.movingSteps.value = this.#target.texture;
+    light.isMoving = true;
   }
 
   /** Draw it anew if it is another now. The layers wear what casts, and all else is hidden. */

@@ -23,11 +23,9 @@ const PART = 2 ** 15;
 const MOST_PIXEL = 2 ** 22;
 
 export class SeenProjection {
-  readonly #place = new Matrix4();
-
   /**
    * @param pixels - Of the map, a side.
-   * @param towards - From the world's axes and unit: where the light is (w = 1), or the way to it (w = 0).
+   * @param towards - As `towardsOf` finds it.
    */
   constructor(
     private readonly projection: Projection,
@@ -63,7 +61,7 @@ export class SeenProjection {
     out.set([...rows[3]!, w], at + 12);
     const high = Math.floor(depth / PART);
     out.set([...whole, high, depth - high * PART], at + 16);
-    this.#writeLight(eye, out, at + 20);
+    writeLight(this.towards, frame, eye, out, at + 20);
     const [across, along] = stepsOf(this.projection);
     out.set(this.#steps(across, eye), at + 24);
     out.set(this.#steps(along, eye), at + 28);
@@ -85,17 +83,26 @@ export class SeenProjection {
       this.pixels;
     return [along(0), along(1), along(2)];
   }
+}
 
-  #writeLight(eye: Matrix4, out: Float32Array, at: number): void {
-    const [x, y, z, w] = this.towards;
-    const { centre, scale } = this.frame;
-    const inFrame = [x, y, z].map((value, a) => (w ? (value - centre[a]!) * scale : value));
-    const e = this.#place.copy(eye).invert().elements;
-    for (let a = 0; a < 3; a++) {
-      out[at + a] = inFrame[0]! * e[a]! + inFrame[1]! * e[4 + a]! + inFrame[2]! * e[8 + a]! + w * e[12 + a]!;
-    }
-    out[at + 3] = w;
+/**
+ * Write where a light is (1 at the end), or the way to it (0), in the eye's own axes, into `out` at `at`.
+ *
+ * @param light - In the world's axes and unit.
+ */
+export function writeLight(
+  [x, y, z, w]: Row,
+  frame: Frame,
+  eye: Matrix4,
+  out: Float32Array,
+  at: number,
+): void {
+  const inFrame = [x, y, z].map((value, a) => (w ? (value - frame.centre[a]!) * frame.scale : value));
+  const e = new Matrix4().copy(eye).invert().elements;
+  for (let a = 0; a < 3; a++) {
+    out[at + a] = inFrame[0]! * e[a]! + inFrame[1]! * e[4 + a]! + inFrame[2]! * e[8 + a]! + w * e[12 + a]!;
   }
+  out[at + 3] = w;
 }
 
 type Triple = [number, number, number];

@@ -19,14 +19,19 @@ ${LIGHT}
 ${CAST}
 `;
 
-/** By name; all materials of a scene share them. */
-export type LightUniforms = Readonly<Record<string, IUniform>>;
+/** What all materials of a scene share of its light. */
+export interface LightShader {
+  readonly uniforms: Readonly<Record<string, IUniform>>;
+  /** What light.glsl wants to be defined, and IS_LIT where the light shines. */
+  readonly defines: Readonly<Record<string, number>>;
+}
 
-/** Have the scene's light shine on what these draw. */
-export function lightBy(uniforms: LightUniforms, materials: readonly ShaderMaterial[]): void {
+/** Have the scene's light shine on what these draw, or shine no more. */
+export function lightBy({ uniforms, defines }: LightShader, materials: readonly ShaderMaterial[]): void {
   for (const material of materials) {
     Object.assign(material.uniforms, uniforms);
-    material.defines = { ...material.defines, IS_LIT: 1 };
+    const own = Object.entries(material.defines ?? {}).filter(([name]) => !/^(IS_LIT|LIGHT_)/.test(name));
+    material.defines = { ...Object.fromEntries(own), ...defines };
     material.needsUpdate = true;
   }
 }
