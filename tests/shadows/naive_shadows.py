@@ -110,3 +110,69 @@ def value_at(tree, x, y, z=0):
                 mask_number += mask >> 2 * i & 3 in (EMPTY, INNER)
         kind, at = mask >> 2 * child & 3, (mask_number, value_number)
     return value
+
+
+def decoded(tree):
+    """(images, side, side) int64: the value of every pixel; one image of a quadtree."""
+    side = 1 << tree.levels
+    is_stack = tree.children == 8
+    out = np.empty((side if is_stack else 1, side, side), np.int64)
+    nodes = [(0, 0, 0, tree.root)]
+    for level in range(tree.levels + 1):
+        size = 1 << (tree.levels - level)
+        values = iter(tree.values[tree.value_starts[level] : tree.value_starts[level + 1]].tolist())
+        begin, end = tree.mask_starts[min(level, tree.levels) : level + 2] if level < tree.levels else (0, 0)
+        masks = iter(tree.masks[begin:end].tolist())
+        below = []
+        for x, y, z, kind in nodes:
+            if kind in (LEAF, INNER):
+                images = slice(z * size, (z + 1) * size) if is_stack else slice(None)
+                out[images, y * size : (y + 1) * size, x * size : (x + 1) * size] = next(values)
+            if kind in (EMPTY, INNER):
+                mask = next(masks)
+                assert mask
+                below += [
+                    (2 * x + (i & 1), 2 * y + (i >> 1 & 1), 2 * z + (i >> 2), mask >> 2 * i & 3)
+                    for i in range(tree.children)
+                    if mask >> 2 * i & 3 != NONE
+                ]
+        assert next(values, None) is None
+        assert next(masks, None) is None
+        nodes = below
+    assert not nodes
+    return out
+
+
+def interval(hits, is_strict=False):
+    """Lowest and highest legal value where a ray meets these (depth, side), 0 front, 1 sheet, 2 back."""
+    hits = sorted(hits)
+    if not hits:
+        return FAR, FAR
+    first, side = hits[0]
+    inside = 0
+    for depth, kind in hits if side == 0 else []:
+        inside += {0: 1, 1: 0, 2: -1}[kind]
+        if inside == 0 and kind == 2:
+            return first, max(first, depth - 1)
+    if is_strict:
+        return first, first
+    return first, min((depth for depth, _ in hits if depth > first), default=FAR + 1) - 1
+
+
+def hits_at(flat, x, y):
+    """What the ray at a place in whole numbers meets: (depth, side)."""
+    hits = []
+    for t in range(len(flat.corners)):
+        corners = [tuple(map(int, flat.corners[t, 2 * k : 2 * k + 2])) for k in range(3)]
+        is_in = True
+        for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
+            e = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+            is_in &= e > 0 or (e == 0 and (by < ay or (by == ay and bx > ax)))
+        if is_in:
+            at, along_x, along_y = flat.planes[t]
+            measure = at + along_x * float(x - corners[0][0]) + along_y * float(y - corners[0][1])
+            is_perspective, scale, shift = flat.lens
+            depth = (scale / measure + shift) if is_perspective else measure
+            low, high = map(int, flat.depths[t])
+            hits.append((int(min(max(depth * 2.0**32, low), high)), int(flat.sides[t])))
+    return hits

@@ -4,7 +4,27 @@ Based on: Scandolo, Bauszat, Eisemann. Compressed Multiresolution Hierarchies fo
 Shadows. Computer Graphics Forum 2016.
 """
 
+from .build import build, intervals
+from .light import AreaLight, Directional, Light, Point, Spot, Sun, SunPath, light_from_json
+from .pack import Packed, pack
 from .projection import Projection
+from .shadow_map import ShadowMap
 from .tree import Tree
 
-__all__ = ["Projection", "Tree"]
+__all__ = [
+    "AreaLight",
+    "Directional",
+    "Light",
+    "Packed",
+    "Point",
+    "Projection",
+    "ShadowMap",
+    "Spot",
+    "Sun",
+    "SunPath",
+    "Tree",
+    "build",
+    "intervals",
+    "light_from_json",
+    "pack",
+]

@@ -36,6 +36,24 @@ class Projection:
         """Whether the light is infinitely far away."""
         return bool((self.matrix[3] == (0, 0, 0, 1)).all())
 
+    def is_mirrored(self) -> bool:
+        """Whether right, up and the way of the light are right-handed: outsides are then seen clockwise."""
+        axis = self.matrix[2 if self.is_parallel else 3, :3]
+        return bool(np.linalg.det(np.stack([*self.matrix[:2, :3], axis])) > 0)
+
+    def lens(self) -> tuple[float, float]:
+        """(scale, shift) such that depth is scale W + shift, which holds where light comes from a place."""
+        z, w = self.matrix[2], self.matrix[3]
+        if self.is_parallel:
+            return 0.0, 0.0
+        scale = float(z[:3] @ w[:3] / (w[:3] @ w[:3]))
+        return scale, float(z[3] - scale * w[3])
+
+    def eye(self) -> NDArray[np.float64]:
+        """(3,): where the light is, which only light from a place can say."""
+        rows = self.matrix[[0, 1, 3]]
+        return np.linalg.solve(rows[:, :3], -rows[:, 3]).astype(np.float64, copy=False)
+
     def project(self, points: ArrayLike, /) -> NDArray[np.float64]:
         """(n, 3): u, v and depth of (n, 3) points; u and v are NaN behind the light."""
         points = np.asarray(points, dtype=np.float64)
