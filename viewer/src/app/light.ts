@@ -1,4 +1,5 @@
 /** The light of a scene: its file, what the visitor chose of it, and its panel. Loaded where a scene has one. */
+import type { LightInfo } from "../format/light";
 import { sentenceOf } from "../format/problem";
 import type { ShadowFilter } from "../scene/light/look";
 import type { SceneLight } from "../scene/light/sceneLight";
@@ -27,8 +28,8 @@ export class LightControl {
   }
 
   /** What the file says, once it is opened. */
-  get info(): ShadowFile["info"] | undefined {
-    return this.#file?.info;
+  get info(): LightInfo | undefined {
+    return this.#file?.light;
   }
 
   /** Bytes received. */
@@ -90,7 +91,7 @@ export class LightControl {
     this.#phase = "opening";
     try {
       const file = await openShadow(this.asked.url);
-      const light = this.app.stage.shine(file.info, this.asked.moving);
+      const light = this.app.stage.shine(file.light, this.asked.moving);
       this.#file = file;
       this.#load = new ShadowLoad(file, {
         onStage: (stage) => this.#take(light, stage),

@@ -1,4 +1,5 @@
 /** The sheet of a scene's light: whether it shines, how its shadows are looked up, and of a sun's path the time. */
+import type { LightInfo } from "../format/light";
 import { SHADOW_FILTERS } from "../scene/light/look";
 import type { App } from "./app";
 import { make } from "./dom";
@@ -45,7 +46,7 @@ export function makeLightPanel(app: App, control: LightControl): Sheet {
 }
 
 /** E.g. "Sunlight of 21 June 2026, 15:00. 65,536 × 65,536 pixels." */
-function aboutOf({ name, begin, end, levels, images }: NonNullable<LightControl["info"]>): string {
+function aboutOf({ name, begin, end, levels, images }: LightInfo): string {
   const when = [begin ? dayOf(begin) : "", hourOf(begin), hourOf(end)];
   const words = [when[0], [when[1], when[2]].filter(Boolean).join(" to ")].filter(Boolean).join(", ");
   const side = (2 ** levels).toLocaleString("en");

@@ -1,9 +1,7 @@
 /** What the file of a shadow map says of its light (spec/container.md, kind `shadow`). */
-import type { Header } from "./container";
+import { damaged } from "./container";
 import type { Triple } from "./graph";
-import { Problem } from "./problem";
-
-export const SHADOW = "shadow";
+import type { ShadowInfo } from "./shadow";
 
 type Told = Readonly<Record<string, unknown>>;
 
@@ -38,44 +36,35 @@ export interface LightInfo {
 /** The kinds that have several projections; all others have one. */
 const KINDS: Readonly<Record<string, LightKind>> = { point: "cube", sun_path: "path", area: "area" };
 const CUBE_FACES = 6;
-const MOST_IMAGES = 4096;
 
-/**
- * @param levels, images - As the header's parser found them.
- * @throws Problem if it does not hold together.
- */
-export function parseLight(header: Header, levels: number, images: number, name: string): LightInfo {
-  const { light } = header;
-  const told = isObject(light) ? light : {};
-  const source = isObject(told.light) ? told.light : told; // of an area, what it is around
-  const kind = KINDS[String(told.kind)] ?? "one";
-  const projections = Array.isArray(header.projections) ? header.projections : [];
-  const expected = kind === "cube" ? CUBE_FACES : kind === "one" ? 1 : images;
-  const isWhole = projections.length === expected && projections.every(isProjection);
-  if (!isWhole || expected > MOST_IMAGES) {
-    throw new Problem(
-      "damaged",
-      `${name} is damaged: its projections do not hold together. Copy or build it again.`,
-    );
-  }
+/** @throws Problem if light and projections do not hold together. */
+export function lightOf(
+  { light, projections, levels, children, images }: ShadowInfo,
+  name: string,
+): LightInfo {
+  const source = isObject(light.light) ? light.light : light; // of an area, what it is around
+  const kind = KINDS[String(light.kind)] ?? "one";
+  const isStack = kind === "path" || kind === "area";
+  const isWhole =
+    isStack === (children === 8) && (isStack || projections.length === (kind === "cube" ? CUBE_FACES : 1));
+  if (!isWhole) throw damaged(name);
   return {
     kind,
-    projections: projections as Projection[],
+    projections: projections.map(rowsOf),
     levels,
-    images: kind === "cube" ? 1 : expected,
+    images,
     middle: kind === "area" ? middleOf(source) : null,
     cone: coneOf(source),
-    name: String(told.kind),
-    begin: textOf(told.time ?? told.begin),
-    end: textOf(told.end),
-    minutes: kind === "path" ? minutesOf(told.times, images) : null,
+    name: String(light.kind),
+    begin: textOf(light.time ?? light.begin),
+    end: textOf(light.end),
+    minutes: kind === "path" ? minutesOf(light.times, images) : null,
   };
 }
 
-function isProjection(value: unknown): value is Projection {
-  const isRow = (row: unknown): boolean =>
-    Array.isArray(row) && row.length === 4 && row.every((x) => Number.isFinite(x));
-  return Array.isArray(value) && value.length === 4 && value.every(isRow);
+function rowsOf(matrix: Float64Array): Projection {
+  const row = (i: number): Row => [...matrix.subarray(4 * i, 4 * i + 4)] as unknown as Row;
+  return [row(0), row(1), row(2), row(3)];
 }
 
 function textOf(value: unknown): string | null {

@@ -15,12 +15,14 @@ const KEY_STRENGTH = 0.9;
  * The pixel of a point with this sRGB colour and unit normal, in the camera's frame.
  *
  * @param facing - The triangle's own normal, on the side of the eye.
+ * @param shadow - How much of the key light arrives.
+ * @param toLight - Where it comes from: a scene's own light, or the one that hangs on the camera.
  */
-export function shade(colour: Rgb, normal: Vector, facing: Vector, shadow = 1): Rgb {
+export function shade(colour: Rgb, normal: Vector, facing: Vector, shadow = 1, toLight: Vector = KEY): Rgb {
   const side = dot(normal, facing) < 0 ? -1 : 1;
-  const key = Math.max(0, side * dot(normal, KEY));
+  const key = shadow * Math.max(0, side * dot(normal, toLight));
   const fill = 0.5 + 0.5 * side * normal[1];
-  const light = AMBIENT + FILL * fill + KEY_STRENGTH * shadow * key;
+  const light = AMBIENT + FILL * fill + KEY_STRENGTH * key;
   const byte = (c: number): number => Math.round(255 * encode(Math.min(1, decode(c / 255) * light)));
   return [byte(colour[0]), byte(colour[1]), byte(colour[2])];
 }

@@ -13,7 +13,7 @@
  * @module select/shadowTree
  */
 
-import type { PackedTree } from "../stream/shadowStage";
+import type { Packed } from "../format/shadowPack";
 
 /** A pixel of the map, and of a stack its image, in voxels of the level that is looked up. */
 export type Place = readonly [x: number, y: number, image: number];
@@ -29,7 +29,7 @@ interface Node {
 }
 
 /** The value of a pixel of the map that this level is, by default the finest. */
-export function valueAt(tree: PackedTree, place: Place, level = tree.levels): number {
+export function valueAt(tree: Packed, place: Place, level = tree.levels): number {
   const node = rootOf(tree);
   descend(tree, node, scaled(tree, place, level), 0, level);
   return tree.words[node.held]!;
@@ -41,7 +41,7 @@ export function valueAt(tree: PackedTree, place: Place, level = tree.levels): nu
  * @param level - Of the map that `place` counts the pixels of, by default the finest.
  */
 export function countLit(
-  tree: PackedTree,
+  tree: Packed,
   [x, y, image]: Place,
   step: number,
   radius: number,
@@ -70,18 +70,18 @@ export function countLit(
   return lit;
 }
 
-function rootOf({ root }: PackedTree): Node {
+function rootOf({ root }: Packed): Node {
   return { kind: root, link: 0, held: root === INNER ? 1 : 0, level: 0 };
 }
 
 /** The same place in voxels of the finest level. */
-function scaled({ levels }: PackedTree, [x, y, image]: Place, level: number): Place {
+function scaled({ levels }: Packed, [x, y, image]: Place, level: number): Place {
   const shift = levels - level;
   return [x << shift, y << shift, image << shift];
 }
 
 /** Go down to `last`, to the end, or to where the bits in `differing` begin. */
-function descend(tree: PackedTree, node: Node, [x, y, z]: Place, differing: number, last: number): void {
+function descend(tree: Packed, node: Node, [x, y, z]: Place, differing: number, last: number): void {
   while (node.kind >= EMPTY && node.level < last) {
     const bit = tree.levels - 1 - node.level;
     if (differing >> bit !== 0) return;

@@ -1,8 +1,8 @@
 /** A shadow map from its file: its light at once, its levels as they come, the coarse ones first. */
 import { damaged } from "../format/container";
-import { type LightInfo, parseLight, SHADOW } from "../format/light";
+import { type LightInfo, lightOf } from "../format/light";
 import { Problem, sentenceOf } from "../format/problem";
-import { parseShadow } from "../format/shadow";
+import { parseShadow, SHADOW, type ShadowInfo } from "../format/shadow";
 import { type OpenFile, openFile, persist } from "./file";
 import type { FromShadowWorker, ToShadowWorker } from "./shadowMessages";
 import type { ShadowStage } from "./shadowStage";
@@ -10,7 +10,8 @@ import { Passing } from "./source";
 
 export interface ShadowFile {
   readonly file: OpenFile;
-  readonly info: LightInfo;
+  readonly info: ShadowInfo;
+  readonly light: LightInfo;
 }
 
 /** @throws Problem in a sentence about the file. */
@@ -21,8 +22,8 @@ export async function openShadow(url: string): Promise<ShadowFile> {
   if (header.kind !== SHADOW) {
     throw new Problem("foreign", `${name} is no shadow map. Build one with: foveal shadow`);
   }
-  const { levels, images } = parseShadow(header, name);
-  return { file, info: parseLight(header, levels, images, name) };
+  const info = parseShadow(header, name);
+  return { file, info, light: lightOf(info, name) };
 }
 
 export interface ShadowEvents {
@@ -73,7 +74,7 @@ export class ShadowLoad {
   async #run(worker: ShadowWorker): Promise<void> {
     const { container, source } = this.shadow.file;
     const { lengths, checksums } = container;
-    worker.postMessage({ type: "open", header: container.header, name: source.name });
+    worker.postMessage({ type: "open", info: this.shadow.info, name: source.name });
     let coming = this.#read(0);
     for (let i = 0; i < lengths.length; i++) {
       const bytes = await coming;

@@ -1,10 +1,10 @@
 /** What page and shadow worker say to each other. */
-import type { Header } from "../format/container";
+import type { ShadowInfo } from "../format/shadow";
 import type { ShadowStage } from "./shadowStage";
 
 export interface OpenShadowMessage {
   readonly type: "open";
-  readonly header: Header;
+  readonly info: ShadowInfo;
   readonly name: string;
 }
 

@@ -1,16 +1,6 @@
 /** Trees of a shadow map as the GPU takes them: one after the other in rows of a texture of words. */
 
-/** The words of spec/shadows.md. */
-export interface PackedTree {
-  readonly words: Uint32Array;
-  /** Of the links of each level. */
-  readonly scales: ArrayLike<number>;
-  readonly levels: number;
-  /** 4, or 8 of a stack of maps. */
-  readonly children: number;
-  /** Kind of the root: LEAF or INNER. */
-  readonly root: number;
-}
+import type { Packed } from "../format/shadowPack";
 
 /** Trees at most: those of a point light. */
 export const MOST_TREES = 6;
@@ -31,7 +21,7 @@ export interface ShadowStage {
   readonly scales: Uint32Array<ArrayBuffer>;
 }
 
-export function stageOf(trees: readonly PackedTree[]): ShadowStage {
+export function stageOf(trees: readonly Packed[]): ShadowStage {
   const count = trees.reduce((sum, { words }) => sum + words.length, 0);
   let widthBits = LEAST_WIDTH_BITS;
   while (4 ** widthBits < count) widthBits++;

@@ -52,7 +52,7 @@ export class SeenProjection {
       const row = rows[axis]!.map((a, i) => pixels * (a - share * rows[3]![i]!));
       out.set([...row, pixels * (value - share * w)], at + 4 * axis);
     }
-    const depth = Math.max(-SHADER_STEPS, Math.min(SHADER_STEPS, Math.floor(z * SHADER_STEPS)));
+    const depth = Math.max(0, Math.min(SHADER_STEPS, Math.floor(z * SHADER_STEPS))); // from there all fits an int
     out.set(
       rows[2]!.map((a) => a * SHADER_STEPS),
       at + 8,
