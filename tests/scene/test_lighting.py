@@ -109,14 +109,15 @@ def test_a_spot_lights_nothing_outside_its_cone():
 
 
 def test_the_light_of_a_scene_is_taken(tmp_path, shadow):
-    multires.build(source_from_mesh(scene()), tmp_path / "scene.fov")
-    assert lighting_of(scene_of(tmp_path / "scene.fov")) is None
-
-    @dataclasses.dataclass
-    class WithLight:
-        light: object
-
-    assert lighting_of(WithLight(shadow), "pcf5", 0).filter == "pcf5"
+    multires.build(source_from_mesh(scene(), up="z"), tmp_path / "scene.fov")
+    bare = scene_of(tmp_path / "scene.fov")
+    assert lighting_of(bare) is None
+    shadow.save(tmp_path / "light.fov")
+    with_light = dataclasses.replace(bare, light=tmp_path / "light.fov")
+    assert lighting_of(with_light, "pcf5").filter == "pcf5"
+    found = render(with_light, camera=CAMERA)
+    np.testing.assert_array_equal(found, render(bare, camera=CAMERA, shadow=shadow))
+    assert np.abs(found.astype(int) - render(bare, camera=CAMERA)).max() > 60
 
 
 def test_what_cannot_be_is_said(shadow):

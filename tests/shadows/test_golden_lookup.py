@@ -1,5 +1,6 @@
 """Packing, lookups and bias: the cases of spec/golden/, as in the viewer."""
 
+import importlib
 import json
 
 import numpy as np
@@ -7,11 +8,12 @@ import pytest
 
 from foveal.shadows import Projection
 from foveal.shadows import _kernels_lookup as kernels
-from foveal.shadows import pack as packing
 from foveal.shadows.bias import receivers, window_of
 from foveal.shadows.pack import Packed, pack
 from foveal.shadows.tree import Tree
 from shadows.golden_lookup import PATH, WORDS_PATH
+
+packing = importlib.import_module("foveal.shadows.pack")  # the function has its name
 
 GOLDEN = json.loads(PATH.read_text())
 WORDS = np.frombuffer(WORDS_PATH.read_bytes(), "<u4").astype(np.uint32)

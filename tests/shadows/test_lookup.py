@@ -1,13 +1,16 @@
 """Kernels of lookups against words read one by one."""
 
+import importlib
+
 import numpy as np
 import pytest
 
 from foveal.shadows import _kernels_lookup as kernels
-from foveal.shadows import pack as packing
 from foveal.shadows.pack import pack
 from shadows.maps import TREES
 from shadows.naive_lookup import lit_count, value_in
+
+packing = importlib.import_module("foveal.shadows.pack")  # the function has its name
 
 
 @pytest.fixture(params=TREES, scope="module")

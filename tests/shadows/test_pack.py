@@ -1,18 +1,20 @@
 """Words say what the tree says, at every pixel and every level."""
 
 import dataclasses
+import importlib
 import itertools
 
 import numpy as np
 import pytest
 
 from foveal.base.errors import FovealError
-from foveal.shadows import pack as packing
 from foveal.shadows.pack import pack
 from foveal.shadows.tree import Tree
 from shadows.maps import TREES
 from shadows.naive_lookup import cut, value_in
 from shadows.naive_shadows import value_at
+
+packing = importlib.import_module("foveal.shadows.pack")  # the function has its name
 
 
 @pytest.fixture(params=TREES, scope="module")

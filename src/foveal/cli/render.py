@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .groups import Telling, building, refining, takes, telling
-from .options import Force, Source
+from .options import Force, Shadow, Source
 from .output import refuse_output
 
 if TYPE_CHECKING:
@@ -50,6 +50,23 @@ def render(
             min=1, metavar="N", help="At most about this many for each layer. Fewer is faster and coarser."
         ),
     ] = None,
+    shadow: Shadow = None,
+    shadow_filter: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILTER",
+            help="The shadow's edge: hard, pcf3, pcf5, filtered (as fine as the picture shows) or soft (the "
+            "mean of all images). By default soft in the light of a surface, else pcf3.",
+        ),
+    ] = None,
+    shadow_image: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            metavar="N",
+            help="Which of the shadow's images, from 0: along a sun's path the time of day.",
+        ),
+    ] = 0,
     force: Force = False,
     *,
     building: AbstractContextManager["BuildOptions"],
@@ -73,6 +90,9 @@ def render(
             size=wanted,
             error_px=error_px,
             triangles=triangles,
+            shadow=shadow,
+            shadow_filter=shadow_filter,
+            shadow_image=shadow_image,
             progress=progress,
             **chosen,
         )

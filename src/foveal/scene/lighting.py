@@ -103,4 +103,4 @@ def lighting(
 
 def lighting_of(scene: Scene, filter: str | None = None, image: int = 0, /) -> Lighting | None:
     """The light of a scene that has one."""
-    return lighting(getattr(scene, "light", None), filter, image)
+    return lighting(scene.light, filter, image)

@@ -3,9 +3,9 @@
 
 import numpy as np
 
-from foveal.base.jit import kernel, lean
+from foveal.base.jit import inlined, kernel
 
-from ._kernels_lookup import IN_STACK, STACKED, begin, lit_in
+from ._kernels_lookup import IN_STACK, STACKED, begin, descend, lit_in, shared_level
 
 STEPS = 4294967296.0
 BIAS_STEPS = 2048.0  # half a millimetre in a kilometre: what float32 rounds away in the page
@@ -13,7 +13,7 @@ ROUNDING_TEXELS = 0.0625
 OFF = -(1 << 30)  # the pixel of a point that is on no map
 
 
-@lean
+@inlined
 def shift_of(window, point, normal, half):
     """How far a receiver moves along its normal to be above its own plane, `half` a kernel around."""
     matrix, rays = window.matrix, window.rays
@@ -25,7 +25,7 @@ def shift_of(window, point, normal, half):
     return w * slope / max(1.0 - slope * away, 0.5)
 
 
-@lean
+@inlined
 def place(window, level, radius, point, normal, has_normal):
     """x, y and step of a receiver on the map of `level`; OFF behind the light or out of any reach."""
     matrix = window.matrix
@@ -64,7 +64,8 @@ def lit_shares(packed, window, level, radius, image, is_cube, points, normals, o
     Pixels off the map are lit. Those off a face of a cube are left out instead: other faces see there.
     """
     links, valued = begin(packed, level)
-    path = (links, valued, np.zeros(4, np.int64))
+    last = np.zeros(4, np.int64)
+    path = (links, valued, last)
     stack = np.empty((STACKED, IN_STACK), np.int64)
     most, samples = (1 << level) - 1, (2 * radius + 1) ** 2
     has_normals = len(normals) > 0
@@ -73,6 +74,16 @@ def lit_shares(packed, window, level, radius, image, is_cube, points, normals, o
         x, y, step = place(window, level, radius, points[i], normal, has_normals)
         if is_cube:
             x, y = min(max(x, 0), most), min(max(y, 0), most)
+        if radius == 0:  # one walk to one value, half again as fast as a square of one pixel
+            out[i] = 1.0
+            if 0 <= x <= most and 0 <= y <= most:
+                shared = shared_level((x ^ last[1]) | (y ^ last[2]) | (image ^ last[3]), level)
+                reached = min(shared, last[0])
+                if links[reached] >= 0:
+                    reached = descend(packed, level, reached, level, x, y, image, links, valued)
+                last[0], last[1], last[2], last[3] = reached, x, y, image
+                out[i] = 1.0 if step <= packed.words[valued[reached]] else 0.0
+            continue
         x0, y0 = max(x - radius, 0), max(y - radius, 0)
         x1, y1 = min(x + radius, most), min(y + radius, most)
         if x0 > x1 or y0 > y1:
