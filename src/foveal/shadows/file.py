@@ -1,6 +1,7 @@
 """The `.fov` of kind "shadow": a light, how it sees, and its trees, coded. See spec/container.md."""
 
 import os
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,7 @@ def write_shadow(shadow_map: "ShadowMap", path: PathLike, /) -> None:
         "levels": levels,
         "children": children,
         "images": len(projections) if children == 8 else 1,
+        **({"spread": trees[0].spread} if children == 8 else {}),
         "parts": parts,
         "nodes": _nodes(trees),
     }
@@ -105,6 +107,9 @@ def read_parts(
     projections = _projections(file)
     trees = _trees(children, len(projections))
     parts = _parts(file, all_levels)
+    spread = _count(file, "spread", 0, all_levels) if children == 8 and "spread" in header else 0
+    if children == 8 and (len(projections) - 1) << spread >> all_levels:
+        raise _damaged(file, "spread")
     first = file.chunk(0)
     size = len(first) // trees
     if len(file) != 1 + len(parts) * trees or len(first) != trees * 8 * (all_levels + 1):
@@ -115,7 +120,8 @@ def read_parts(
         chunks = [file.chunk(1 + part * trees + tree) for part in range(wanted)]
         counts = _counts_of(first[tree * size : (tree + 1) * size], all_levels, children)
         try:
-            found.append(decode(counts, parts, chunks))
+            read = decode(counts, parts, chunks)
+            found.append(replace(read, spread=spread - (all_levels - read.levels)) if children == 8 else read)
         except FovealError as error:
             raise FovealError(f"{file.name}: {error}") from error
     return header.get("light"), projections, tuple(found)
