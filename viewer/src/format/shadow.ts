@@ -42,7 +42,8 @@ export function parseShadow(header: Header, name: string): ShadowInfo {
   if (!areParts(parts, levels)) throw damaged(name);
   const isStack = children === 8;
   const spread = (isStack && header.spread) || 0;
-  if (!isLevel(spread) || (isStack && (projections.length - 1) * 2 ** spread >= 2 ** levels)) throw damaged(name);
+  if (!isLevel(spread) || (isStack && (projections.length - 1) * 2 ** spread >= 2 ** levels))
+    throw damaged(name);
   return {
     light: light as Header,
     projections,
