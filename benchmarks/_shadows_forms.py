@@ -1,4 +1,4 @@
-"""Forms of one shadow map beside each other: the authors' greedy tree, trees from all pixels, plain coders."""
+"""Forms of one shadow map beside each other: the authors' greedy tree, all pixels' trees, plain coders."""
 
 import zlib
 from collections.abc import Callable

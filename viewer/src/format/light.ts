@@ -20,6 +20,7 @@ export interface LightInfo {
   readonly levels: number;
   /** Of a stack; else 1. */
   readonly images: number;
+  readonly spread: number;
   /** Of an area, its middle: where it is (1 at the end), or the way to it (0). */
   readonly middle: Row | null;
   /** Of a spot, the way it looks, and the least cosine to that. */
@@ -39,7 +40,7 @@ const CUBE_FACES = 6;
 
 /** @throws Problem if light and projections do not hold together. */
 export function lightOf(
-  { light, projections, levels, children, images }: ShadowInfo,
+  { light, projections, levels, children, images, spread }: ShadowInfo,
   name: string,
 ): LightInfo {
   const source = isObject(light.light) ? light.light : light; // of an area, what it is around
@@ -53,6 +54,7 @@ export function lightOf(
     projections: projections.map(rowsOf),
     levels,
     images,
+    spread,
     middle: kind === "area" ? middleOf(source) : null,
     cone: coneOf(source),
     name: String(light.kind),

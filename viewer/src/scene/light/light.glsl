@@ -15,6 +15,7 @@ uniform sampler2D lightProjections; /* a projection a row (seenProjection.ts), a
 uniform vec3 lightReference; /* what they are told relative to, from the eye */
 uniform int lightImages; /* of a stack */
 uniform int lightMissing; /* levels of the map that are still on their way */
+uniform int lightSpread; /* images are 2^this apart in the octree */
 uniform float lightTime; /* image of a path, between two as well */
 uniform int lightSamples; /* images of an area that a pixel asks */
 uniform float lightLift; /* by how many times its depth a place may be beside what casts */
@@ -175,7 +176,7 @@ float lightArrives(int row, vec3 facing, vec3 place, vec3 right, vec3 up) {
   float sum = 0.0;
   for (int i = 0; i < lightSamples; i++) {
     int image = min(int(first + float(i) * stride), lightImages - 1);
-    sum += lightShare(lightView(image, place), 0, image >> lightMissing, facing, shadowLevels, 0);
+    sum += lightShare(lightView(image, place), 0, image << lightSpread >> lightMissing, facing, shadowLevels, 0);
   }
   return sum / float(lightSamples);
 }
@@ -185,7 +186,7 @@ float lightArrives(int row, vec3 facing, vec3 place, vec3 right, vec3 up) {
 #if LIGHT_KIND == LIGHT_CUBE
   int tree = row, image = 0;
 #else
-  int tree = 0, image = row >> lightMissing;
+  int tree = 0, image = row << lightSpread >> lightMissing;
 #endif
   LightView view = lightView(row, place);
 #if LIGHT_FILTERED

@@ -56,6 +56,7 @@ export class SceneLight implements LightShader {
     texture.minFilter = texture.magFilter = NearestFilter;
     this.uniforms.lightProjections.value = texture;
     this.uniforms.lightImages.value = info.images;
+    this.uniforms.lightSpread.value = info.spread;
     this.uniforms.lightCone.value = info.cone?.cosine ?? -2;
     this.#projections = [];
     this.#middle = info.middle ?? towardsOf(info.projections[0]!);
@@ -174,6 +175,7 @@ function makeUniforms() {
     lightReference: { value: new Vector3() },
     lightImages: { value: 1 },
     lightMissing: { value: 0 },
+    lightSpread: { value: 0 },
     lightTime: { value: 0 },
     lightSamples: { value: 1 },
     lightLift: { value: 0 },
