@@ -6,6 +6,7 @@ Only when the format itself changes.
 """
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,14 +17,14 @@ from foveal.shadows import Directional, Point, SunPath, coded
 from foveal.shadows.file import read_parts, write_shadow
 from foveal.shadows.pack import pack
 from foveal.shadows.projection import Projection
-from shadows.maps import things
+from shadows.maps import FAR, things
 from shadows.naive_shadows import tree_of_pixels
 from shadows.random_trees import random_tree
 
 FOLDER = Path(__file__).parents[2] / "spec" / "golden"
 SMALL_PART = 16
 """Nodes that are joined in the first chunk: few, so that small trees have several chunks."""
-DAY = SunPath("2026-06-21T08:00+02:00", "2026-06-21T18:00+02:00", 11, latitude=43.72, longitude=10.4)
+DAY = SunPath("2026-06-21T08:00+02:00", "2026-06-21T18:00+02:00", 8, latitude=43.72, longitude=10.4)
 DOWN = Directional((0.25, -1, 0.5))
 
 
@@ -33,6 +34,14 @@ def projections(count):
     return tuple(Projection(matrix) for matrix in random.standard_normal((count, 4, 4)))
 
 
+def spread_stack():
+    """Eight images, every other place of the third axis."""
+    apart = [np.zeros((16, 16, 16), np.int64), np.full((16, 16, 16), FAR)]
+    for places, images in zip(apart, things(16, 4, images=8), strict=True):
+        places[::2] = images
+    return replace(tree_of_pixels(*apart), spread=1)
+
+
 CASES = {
     "map": lambda: (DOWN, projections(1), (tree_of_pixels(*things(64, 1)),)),
     "six": lambda: (
@@ -40,11 +49,7 @@ CASES = {
         projections(6),
         tuple(tree_of_pixels(*things(16, seed)) for seed in range(6)),
     ),
-    "stack": lambda: (
-        DAY,
-        projections(11),
-        (tree_of_pixels(*things(16, 4, images=11)),),
-    ),
+    "stack": lambda: (DAY, projections(8), (spread_stack(),)),
     "any": lambda: (DOWN, projections(1), (random_tree(np.random.default_rng(8), 5, 4, most=20),)),
     "one_value": lambda: (DOWN, projections(1), (tree_of_pixels(np.full((1, 1), 9), np.full((1, 1), 9)),)),
 }
@@ -62,6 +67,7 @@ def tree_json(tree):
     packed = pack(tree)
     return {
         "root": tree.root,
+        "spread": tree.spread,
         "masks": tree.masks.tolist(),
         "mask_starts": tree.mask_starts.tolist(),
         "values": tree.values.tolist(),

@@ -37,7 +37,7 @@ def random_tree(random, levels, children, most=200):
 
 def assert_same(a, b):
     """The same numbers, in the same types."""
-    assert (a.levels, a.children, a.root) == (b.levels, b.children, b.root)
+    assert (a.levels, a.children, a.root, a.spread) == (b.levels, b.children, b.root, b.spread)
     for name in ("masks", "mask_starts", "values", "value_starts"):
         found, wanted = getattr(a, name), getattr(b, name)
         assert found.dtype == wanted.dtype, name

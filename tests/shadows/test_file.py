@@ -78,7 +78,7 @@ def test_the_golden_files_are_read_and_written(tmp_path, name):
     golden_trees.write(name, tmp_path / "again.fov")
     with open_container(path) as old, open_container(tmp_path / "again.fov") as new:
         assert [old.chunk(i) for i in range(len(old))] == [new.chunk(i) for i in range(len(new))]
-        unlike = {"generator": 0, "first_bytes": 0}
+        unlike = {"generator": 0, "first_bytes": 0, "light": 0}  # lights may come to tell more
         assert {**old.header, **unlike} == {**new.header, **unlike}
 
 
@@ -97,6 +97,22 @@ def test_fewer_levels_are_read_of_fewer_chunks():
             assert [tree.levels for tree in trees] == [have] * 6
             assert sorted(asked) == list(range(1 + 6 * (parts.index(have) + 1)))
     assert read_shadow(path, levels=2).resolution < read_shadow(path).resolution
+
+
+def test_a_stack_without_its_finest_levels_is_not_written(tmp_path):
+    path = golden_trees.FOLDER / "shadow_tree_stack.fov"
+    coarse = read_shadow(path, levels=2)
+    assert coarse.trees[0].spread < 0
+    with pytest.raises(FovealError, match="Read it whole"):
+        coarse.save(tmp_path / "a.fov")
+    read_shadow(path).save(tmp_path / "a.fov")
+
+
+@pytest.mark.parametrize("spread", [-1, 2, 30, 0.5])
+def test_images_that_have_no_place_are_refused(spread):
+    data = (golden_trees.FOLDER / "shadow_tree_stack.fov").read_bytes()
+    with pytest.raises(FovealError, match="spread"):
+        read_shadow(rewritten(data, {"spread": spread}))
 
 
 def test_the_bytes_are_those_of_the_spec(tmp_path):
