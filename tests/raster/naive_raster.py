@@ -2,6 +2,8 @@
 
 import numpy as np
 
+KEY = (-0.35, 0.45, float(np.sqrt(1 - 0.35**2 - 0.45**2)))
+
 
 def rays(camera, *, shift=(0.0, 0.0)):
     """(height, width, 3): direction through each sample, one unit deep, moved by so many pixels."""
@@ -29,12 +31,12 @@ def cast(positions, faces, camera, *, shift=(0.0, 0.0)):
     return ids, depths
 
 
-def shade(colour, normal, facing, shadow=1.0):
+def shade(colour, normal, facing, shadow=1.0, to_light=KEY):
     """The pixel of a point, in the camera's frame; `facing` is the triangle's normal on the eye's side."""
     normal = np.asarray(normal, dtype=float)
     if normal @ facing < 0:
         normal = -normal
-    key = max(0.0, float(normal @ [-0.35, 0.45, np.sqrt(1 - 0.35**2 - 0.45**2)]))
+    key = max(0.0, float(normal @ to_light))
     light = 0.08 + 0.17 * (0.5 + 0.5 * normal[1]) + 0.90 * shadow * key
     return [int(np.floor(255 * encode(min(1.0, decode(c / 255) * light)) + 0.5)) for c in colour]
 

@@ -78,8 +78,10 @@ def test_a_vertex_without_a_normal_shows_its_face():
 
 @pytest.mark.skipif(not SHADING.exists(), reason="the viewer's cases are not written yet")
 def test_golden_cases_of_the_viewer():
-    for case in json.loads(SHADING.read_text())["cases"]:
-        light = kernels.light_of(*case["normal"], *case["facing"], case.get("shadow", 1.0))
+    golden = json.loads(SHADING.read_text())
+    for case in golden["cases"] + golden["with_light"]:
+        to_light = case.get("to_light", naive_raster.KEY)
+        light = kernels.light_of(*case["normal"], *case["facing"], *to_light, case.get("shadow", 1.0))
         decode, encode = tables()
         linear = [min(1.0, kernels.decoded(float(c), decode) * light) for c in case["colour"]]
         found = [int(kernels.encoded(x, encode)) for x in linear]

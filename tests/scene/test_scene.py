@@ -43,7 +43,7 @@ def test_what_is_written_is_read(tmp_path, make_fov):
 
 def test_what_is_left_out_takes_its_default_and_what_is_not_known_is_ignored(fov, tmp_path):
     path = tmp_path / "scene.json"
-    path.write_text(json.dumps({"version": 1, "layers": [{"asset": "statue.fov", "glow": 3}], "light": {}}))
+    path.write_text(json.dumps({"version": 1, "layers": [{"asset": "statue.fov", "glow": 3}], "fog": {}}))
     scene = read_scene(path)
     assert scene == Scene(tmp_path.name, (Layer("statue", fov.resolve()),))
 

@@ -47,6 +47,11 @@ def test_what_is_seen_from_the_edge_casts_nothing():
         build(upright, DOWN, resolution=16)
 
 
+def test_one_sheet_alone_shades_nothing_of_itself():
+    shadow = build(sheet((-1, -1), (1, 1), 0.0), Directional((0.3, 0.2, -1)), resolution=64)
+    assert shadow.lookup([[0, 0, 0], [0.5, 0, 0]]).all()
+
+
 def test_phases_are_timed():
     shadow = build(solids(), DOWN, resolution=64)
     assert list(shadow.times) == ["joining", "projecting", "tracing"]
@@ -94,3 +99,14 @@ def test_how_often_a_point_is_enclosed():
     casters = casters_of([ball((0, 0, 0)), ball((0.5, 0, 0)), sheet((-3, -3), (3, 3), 0.2)])
     for point, times in (((0.3, 0, 0), 2), ((-0.8, 0, 0), 1), ((0, 0, 3), 0)):
         assert winding_number(casters, np.array(point, float)) == pytest.approx(times, abs=1e-9)
+
+
+def test_more_nodes_than_memory_holds(monkeypatch):
+    """Strictly, a sheet askew to the light takes as many values as pixels."""
+    monkeypatch.setattr("foveal.shadows.construct.MOST_NODES", 1 << 19)
+    roof = sheet((-1, -1), (1, 1), 0.0)
+    light = Directional((0.3, 0.2, -1))
+    assert build(roof, light, resolution=1 << 11).trees
+    for more in (0, 2):
+        with pytest.raises(FovealError, match="lower resolution"):
+            build(roof, light, resolution=1 << (11 + more), exits="strict")

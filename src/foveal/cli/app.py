@@ -24,6 +24,7 @@ from .publish import publish
 from .refine import refine
 from .render import render
 from .result import plain
+from .shadow import shadow
 from .view import view
 
 __all__ = ["app"]
@@ -83,7 +84,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for _command in (view, build, info, check, export, refine, render, publish):
+for _command in (view, build, info, check, export, refine, render, shadow, publish):
     app.command()(_command)
 
 

@@ -30,7 +30,7 @@ def _scene(facts: dict[str, Any]) -> list[str]:
             f"{layer['name']}{'' if layer['visible'] else ' (hidden at first)'}",
             *_LINES[layer["kind"]](layer),
         ]
-    return lines
+    return lines if "light" not in facts else [*lines, "", "light", *_shadow(facts["light"])]
 
 
 def _common(facts: dict[str, Any]) -> list[str]:
@@ -114,4 +114,17 @@ def _depths(facts: dict[str, Any]) -> list[str]:
     ]
 
 
-_LINES = {"scene": _scene, "multires": _fov, "mesh": _mesh, "cage": _cage}
+def _shadow(facts: dict[str, Any]) -> list[str]:
+    side, light = facts["resolution"], facts["light"]
+    maps = counted(facts["maps"], "map")
+    said = ", ".join(f"{key} {light[key]}" for key in _OF_A_LIGHT if light.get(key) is not None)
+    return [
+        f"{facts['file']}: shadows of {said or 'a light'}, {facts['bytes']:,} bytes",
+        f"  pixels       {facts['pixels']:,} ({side:,} x {side:,}, {maps})",
+        f"  ratio        1/{4 * facts['pixels'] / facts['bytes']:,.0f} of 32 bits a pixel",
+        f"  nodes        {', '.join(f'{count:,} {kind}' for kind, count in facts['nodes'].items())}",
+    ]
+
+
+_OF_A_LIGHT = ("kind", "time", "begin", "end", "latitude", "longitude", "direction", "position", "target")
+_LINES = {"scene": _scene, "multires": _fov, "mesh": _mesh, "cage": _cage, "shadow": _shadow}

@@ -32,6 +32,7 @@ __all__ = [
     "RuleKind",
     "Scheme",
     "SchemeKind",
+    "Shadow",
     "SharpEdges",
     "SilhouetteBend",
     "SilhouetteEdgePx",
@@ -265,6 +266,14 @@ SharpEdges = Annotated[
         max=180.0,
         metavar="DEGREES",
         help="Keep edges sharp at which the control mesh bends by more than this. For sqrt3.",
+    ),
+]
+Shadow = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.fov",
+        help="Light it by what 'foveal shadow' made, in place of a light that the eye carries.",
+        readable=False,
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace what is there already.")]

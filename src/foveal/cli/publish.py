@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .groups import Telling, building, refining, takes, telling
-from .options import Source
+from .options import Shadow, Source
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
@@ -23,6 +23,7 @@ def publish(
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="New or empty.", readable=False)
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace what was published there before.")] = False,
+    shadow: Shadow = None,
     *,
     building: AbstractContextManager["BuildOptions"],
     refining: "RefineOptions",
@@ -36,7 +37,7 @@ def publish(
 
     with telling.progress() as progress, building as options:
         chosen: BuildOptions = {**options, **refining}
-        foveal.publish(file, output, force=force, progress=progress, **chosen)
+        foveal.publish(file, output, force=force, shadow=shadow, progress=progress, **chosen)
     files = [path for path in output.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files)
     telling.result(

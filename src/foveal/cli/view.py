@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .groups import Telling, building, refining, takes, telling
-from .options import Source
+from .options import Shadow, Source
 
 if TYPE_CHECKING:
     from foveal.scene.build import BuildOptions
@@ -40,6 +40,7 @@ def view(
             help="Frames a second to be held while a control mesh is refined; 0 for no such wish.",
         ),
     ] = None,
+    shadow: Shadow = None,
     *,
     building: AbstractContextManager["BuildOptions"],
     refining: "RefineOptions",
@@ -56,7 +57,15 @@ def view(
     is_wanted = False if no_browser else None
     with telling.progress() as progress, building as options:
         chosen: BuildOptions = {**options, **refining, "rate": rate}
-        running = foveal.view(file, host=host, port=port, open_browser=is_wanted, progress=progress, **chosen)
+        running = foveal.view(
+            file,
+            host=host,
+            port=port,
+            open_browser=is_wanted,
+            shadow=shadow,
+            progress=progress,
+            **chosen,
+        )
     with running:
         telling.result({"url": running.url}, f"{running.url}   (Ctrl-C ends it)", brief=running.url)
         running.wait()

@@ -7,7 +7,8 @@ from foveal.base.jit import kernel
 
 DECODE_STEPS = 255  # entries of the table of decoded bytes less one
 ENCODE_STEPS = 4095
-KEY_Z = float(np.sqrt(1 - 0.35**2 - 0.45**2))  # of the key light (-0.35, 0.45, KEY_Z)
+KEY_X, KEY_Y = -0.35, 0.45  # the key light that hangs on the camera
+KEY_Z = float(np.sqrt(1 - KEY_X**2 - KEY_Y**2))
 
 
 @kernel
@@ -27,19 +28,27 @@ def weigh(face_ids, first_row, faces, seen, lens, weights):
                 weights[row, column] = 0.0
                 continue
             x = (column + 0.5 - 0.5 * width) / pixels_per_radian
-            a, b, c = seen[faces[face, 0]], seen[faces[face, 1]], seen[faces[face, 2]]
-            for_a = _volume(x, y, b, c)
-            for_b = _volume(x, y, c, a)
-            for_c = _volume(x, y, a, b)
-            if for_a + for_b + for_c < 0.0:
-                for_a, for_b, for_c = -for_a, -for_b, -for_c
-            for_a, for_b, for_c = max(for_a, 0.0), max(for_b, 0.0), max(for_c, 0.0)
-            total = for_a + for_b + for_c
-            if not total > 0.0:  # seen edge-on
-                for_a, for_b, for_c, total = 1.0, 1.0, 1.0, 3.0
-            weights[row, column, 0] = for_a / total
-            weights[row, column, 1] = for_b / total
-            weights[row, column, 2] = for_c / total
+            for_a, for_b, for_c = weights_of(
+                x, y, seen[faces[face, 0]], seen[faces[face, 1]], seen[faces[face, 2]]
+            )
+            weights[row, column, 0] = for_a
+            weights[row, column, 1] = for_b
+            weights[row, column, 2] = for_c
+
+
+@kernel
+def weights_of(x, y, a, b, c):
+    """The weights of corners where the ray (x, y, 1) meets their plane; from 0, sum 1."""
+    for_a = _volume(x, y, b, c)
+    for_b = _volume(x, y, c, a)
+    for_c = _volume(x, y, a, b)
+    if for_a + for_b + for_c < 0.0:
+        for_a, for_b, for_c = -for_a, -for_b, -for_c
+    for_a, for_b, for_c = max(for_a, 0.0), max(for_b, 0.0), max(for_c, 0.0)
+    total = for_a + for_b + for_c
+    if not total > 0.0:  # seen edge-on
+        for_a, for_b, for_c, total = 1.0, 1.0, 1.0, 3.0
+    return for_a / total, for_b / total, for_c / total
 
 
 @kernel
@@ -57,7 +66,7 @@ def _unit(x, y, z, least):
 
 
 @kernel
-def _face_normal(a, b, c):
+def face_normal(a, b, c):
     """Unit normal of a triangle in the camera's frame (depth ahead), (0, 0, 1) if it has none."""
     ux, uy, uz = b[0] - a[0], b[1] - a[1], a[2] - b[2]
     vx, vy, vz = c[0] - a[0], c[1] - a[1], a[2] - c[2]
@@ -80,21 +89,35 @@ def _normal_at(corners, weights, normals, basis):
 
 
 @kernel
-def light_of(x, y, z, facing_x, facing_y, facing_z, shadow):
-    """Steps 1 to 4 of the page, for a unit normal and the triangle's own, towards the eye."""
+def light_of(x, y, z, facing_x, facing_y, facing_z, key_x, key_y, key_z, shadow):
+    """Steps 1 to 4 of the page, for a unit normal, the triangle's own towards the eye, and the key light."""
     if x * facing_x + y * facing_y + z * facing_z < 0.0:
         x, y, z = -x, -y, -z
-    key = max(0.0, x * -0.35 + y * 0.45 + z * KEY_Z)
+    key = max(0.0, x * key_x + y * key_y + z * key_z)
     return 0.08 + 0.17 * (0.5 + 0.5 * y) + 0.90 * shadow * key
 
 
 @kernel
 def shade(
-    face_ids, weights, first_row, faces, seen, normals, colours, plain, basis, lens, shadows, decode, out
+    face_ids,
+    weights,
+    first_row,
+    faces,
+    seen,
+    normals,
+    colours,
+    plain,
+    basis,
+    lens,
+    keys,
+    shadows,
+    decode,
+    out,
 ):
     """Linear red, green, blue of each sample; 0 where there is no face.
 
-    `normals`, `colours` and `shadows` may be empty: then faces are flat, `plain`, or all in the light.
+    `normals` and `colours` may be empty: then faces are flat and `plain`. So may `keys`, the directions to
+    the light, and `shadows`: then it hangs on the camera, or all is in it.
     """
     pixels_per_radian, width, height, _ = lens
     for row in range(len(face_ids)):
@@ -108,14 +131,17 @@ def shade(
             has_one = False
             if len(normals) > 0:
                 x, y, z, has_one = _normal_at(corners, weight, normals, basis)
-            fx, fy, fz = _face_normal(seen[corners[0]], seen[corners[1]], seen[corners[2]])
+            fx, fy, fz = face_normal(seen[corners[0]], seen[corners[1]], seen[corners[2]])
             to_eye_x = -(column + 0.5 - 0.5 * width) / pixels_per_radian
             if fx * to_eye_x + fy * to_eye_y + fz < 0.0:
                 fx, fy, fz = -fx, -fy, -fz
             if not has_one:
                 x, y, z = fx, fy, fz
             shadow = shadows[row, column] if len(shadows) > 0 else 1.0
-            light = light_of(x, y, z, fx, fy, fz, shadow)
+            key_x, key_y, key_z = KEY_X, KEY_Y, KEY_Z
+            if len(keys) > 0:
+                key_x, key_y, key_z = keys[row, column, 0], keys[row, column, 1], keys[row, column, 2]
+            light = light_of(x, y, z, fx, fy, fz, key_x, key_y, key_z, shadow)
             for k in range(3):
                 colour = plain[k]
                 if len(colours) > 0:

@@ -17,6 +17,7 @@ from foveal.mesh.trimesh import TriMesh
 from foveal.view.camera import Camera
 
 from . import _kernels_shade as kernels
+from .lit import SceneLight, lit_band
 from .rasterise import AHEAD, BAND_ROWS, Screen
 from .shade import PLASTER, shade_band, tables
 
@@ -75,10 +76,12 @@ def picture(
     is_flat: bool = False,
     has_colours: bool = True,
     plain: Colour = PLASTER,
+    light: SceneLight | None = None,
+    error_px: float = 0.0,
     executor: Executor | None = None,
     progress: Progress = SILENT,
 ) -> Picture:
-    """Draw a mesh as the viewer does: lit from the camera, smooth, from both sides.
+    """Draw a mesh as the viewer does: lit from the camera or by a light, smooth, from both sides.
 
     Parameters
     ----------
@@ -94,6 +97,11 @@ def picture(
         Whether each triangle shows its own normal.
     has_colours : bool
         Whether the mesh's colours are shown; else, and without colours, it is `plain` (sRGB).
+    light : SceneLight, optional
+        Where the key light comes from and how much of it arrives; by default it hangs on the camera.
+    error_px : float
+        By how many pixels the mesh may be beside what casts the light's shadows: so far towards the eye is
+        asked how much light arrives, or a coarser mesh would be in the shadow of the finer one.
     executor : Executor, optional
         Local threads by default. The bytes do not depend on it.
     progress : Progress
@@ -119,6 +127,7 @@ def picture(
     if not 1 <= supersampling <= 8:
         raise ValueError(f"supersampling must be from 1 to 8, got {supersampling}")
     behind = _background(background, camera)
+    lift_px = error_px * supersampling
     linear_of = tables()[0].astype(np.float32)
     wide = replace(camera, width=camera.width * supersampling, height=camera.height * supersampling)
     normals = None if is_flat else vertex_normals(mesh) if mesh.normals is None else mesh.normals
@@ -132,10 +141,19 @@ def picture(
     def draw(group: int) -> None:
         bands = range(group * bands_a_group, min((group + 1) * bands_a_group, screen.bands))
         face_ids = [screen.draw(band)[1] for band in bands]
-        linear = [
-            shade_band(screen, band, ids, normals=normals, colours=colours, plain=plain)
-            for band, ids in zip(bands, face_ids, strict=True)
-        ]
+        linear = []
+        for band, ids in zip(bands, face_ids, strict=True):
+            keys, shadows = (None, None) if light is None else lit_band(screen, band, ids, light, lift_px)
+            linear.append(
+                shade_band(
+                    *(screen, band, ids),
+                    normals=normals,
+                    colours=colours,
+                    plain=plain,
+                    keys=keys,
+                    shadows=shadows,
+                )
+            )
         rows = slice(group * rows_a_group, (group + 1) * rows_a_group)
         # Decoded by the group: all at once a large picture's would take more memory than all else.
         back = np.empty((0, 0, 3), np.float32) if behind is None else linear_of[behind[rows]]

@@ -57,6 +57,7 @@ def shade_band(
     normals: NDArray[np.float32] | None,
     colours: NDArray[np.uint8] | None,
     plain: tuple[int, int, int] = PLASTER,
+    keys: NDArray[np.float32] | None = None,
     shadows: NDArray[np.float32] | None = None,
 ) -> NDArray[np.float32]:
     """Linear colours of a band of a screen.
@@ -67,6 +68,8 @@ def shade_band(
         As `screen.draw` gives them.
     normals, colours : (n, 3), optional
         Of the vertices. Without normals faces are flat, without colours all is `plain`.
+    keys : (rows, width, 3) float32, optional
+        Unit vectors from samples to the light, in the camera's frame; by default it hangs on the camera.
     shadows : (rows, width) float32, optional
         How much of the key light arrives at each sample, 0 to 1.
 
@@ -82,6 +85,7 @@ def shade_band(
         np.empty((0, 3), dtype=np.uint8) if colours is None else colours,
         np.array(plain, dtype=np.float64),
         *(screen.camera.basis(), screen.lens),
+        np.empty((0, 0, 3), dtype=np.float32) if keys is None else keys,
         np.empty((0, 0), dtype=np.float32) if shadows is None else shadows,
         *(tables()[0], linear),
     )

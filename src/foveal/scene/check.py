@@ -7,11 +7,13 @@ from typing import Any
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, refuse_missing
 from foveal.base.progress import SILENT, Progress
+from foveal.container import open_container
 
 from .cage_file import is_cage, read_cage
 from .cage_polygons import PolygonCounts, has_border
 from .read import read
 from .scene import read_scene
+from .scene_light import is_shadow, shadow_facts
 
 __all__ = ["check"]
 
@@ -41,7 +43,8 @@ def check(
     -------
     dict
         JSON can hold it: `file`, `is_whole`, and what `multires.check` tells (of a control mesh the counts
-        and `is_closed`), or `layers` with one such for each asset.
+        and `is_closed`; of shadows their resolution and nodes), or `layers` with one such for each asset,
+        and `light` for the scene's.
 
     Raises
     ------
@@ -67,6 +70,8 @@ def check(
 
     if is_cage(path):
         return {"file": str(path), "is_whole": True, **_cage(path, original)}
+    if is_shadow(path):
+        return {"file": str(path), "is_whole": True, **_shadow(path, original)}
     if path.suffix.lower() == ".fov":
         mesh = None if original is None else read(original)
         report = multires.check(path, deep=deep, original=mesh, progress=progress)
@@ -75,8 +80,26 @@ def check(
         raise FovealError(
             f"{path}: an original can be given for a single .fov only. Check the files one by one."
         )
-    layers = [check(layer.path, deep=deep, progress=progress) for layer in read_scene(path).layers]
-    return {"file": str(path), "is_whole": True, "layers": layers}
+    scene = read_scene(path)
+    layers = [check(layer.path, deep=deep, progress=progress) for layer in scene.layers]
+    light = {} if scene.light is None else {"light": check(scene.light, progress=progress)}
+    return {"file": str(path), "is_whole": True, "layers": layers, **light}
+
+
+def _shadow(path: Path, original: PathLike | None) -> dict[str, Any]:
+    """That all of a shadow map can be decoded, and is what its header tells."""
+    from foveal.shadows.counts import counts
+    from foveal.shadows.file import read_shadow
+
+    if original is not None:
+        raise FovealError(f"{path}: shadows have no errors to be measured. Leave the original out.")
+    with open_container(path) as file:
+        told = shadow_facts(file, path.stat().st_size)
+    shadow_map = read_shadow(path)
+    nodes = counts(shadow_map.trees)._asdict()
+    if nodes != told["nodes"]:
+        raise FovealError(f"{path}: its trees are not what its header tells. Copy it again, or make it anew.")
+    return {"resolution": shadow_map.resolution, "images": told["images"], "nodes": nodes}
 
 
 def _cage(path: Path, original: PathLike | None) -> dict[str, Any]:

@@ -22,6 +22,8 @@ from .cage_file import control_mesh
 from .cage_polygons import PolygonCounts
 from .refinement import refinement_json
 from .scene import read_scene
+from .scene_light import KIND as SHADOW
+from .scene_light import shadow_facts
 
 if TYPE_CHECKING:
     from foveal.mesh.polymesh import PolyMesh
@@ -43,12 +45,13 @@ def info(source: "PathLike | TriMesh | PolyMesh", /, *, up: str | None = None) -
     Returns
     -------
     dict
-        JSON can hold it. `kind` is "multires", "cage", "mesh" or "scene". For a `.fov`, `level_table` has a
-        row for each level, coarse to fine: the triangles that are shown when all up to it is expanded,
-        their largest distance to the original (`error`, an upper bound), and the level's own bytes. For a
+        JSON can hold it. `kind` is "multires", "cage", "shadow", "mesh" or "scene". For patches,
+        `level_table` has a row for each level, coarse to fine: the triangles that are shown when all up to it
+        is expanded, their largest distance to the original (`error`, an upper bound), its own bytes. For a
         mesh, `topology` counts components, open and non-manifold edges, and what else is odd; of a PolyMesh
         `polygons` counts its faces, creases and corners. For a control
-        mesh, `scheme`, `criteria` and so on say how it is meant to be refined.
+        mesh, `scheme`, `criteria` and so on say how it is meant to be refined. For shadows, `light`,
+        `resolution`, and `nodes` by kind; a scene's `light` is such a dict.
 
     Raises
     ------
@@ -99,6 +102,7 @@ def _scene_info(path: Path) -> dict[str, Any]:
             for layer in scene.layers
         ],
         "views": [view.name for view in scene.views],
+        **({"light": _fov_info(scene.light)} if scene.light else {}),
     }
 
 
@@ -147,6 +151,8 @@ def _fov_info(path: Path) -> dict[str, Any]:
     with open_container(path) as file:
         if file.kind == CAGE:
             return _cage_info(file, path.stat().st_size)
+        if file.kind == SHADOW:
+            return shadow_facts(file, path.stat().st_size)
         file.expect("multires", 1)
         header, size = file.header, path.stat().st_size
         _refuse_damage(header, str(path))

@@ -29,6 +29,7 @@ from .depth_rules import is_chosen
 from .facing import Once, tell_inside_out
 from .refinement import RefineOptions, chosen
 from .scene import Layer, Scene, read_scene, scene_of
+from .scene_light import light_file, with_light
 from .source import Source, checked, name_of
 
 __all__ = ["CACHE_BYTES", "cache_folder", "load", "prepare", "refuse_shaping"]
@@ -38,13 +39,8 @@ CACHE_BYTES = 10_000_000_000
 
 # The options that change the bytes of a build.
 _SHAPING = ("bits", "step", "normals", "up", "sharp_edges", "pair_triangles", "prim", "placements")
-_REFINING = (
-    "criteria",
-    "depths",
-    "positions",
-    "budget",
-    "rate",
-)  # and those that a scene can say of a control mesh
+# and those that a scene can say of a control mesh
+_REFINING = ("criteria", "depths", "positions", "budget", "rate")
 _WHOLE = 64 << 20  # files up to this size are hashed whole (0.1 s), larger ones at both ends
 _END = 1 << 20
 _DIGITS = 20
@@ -59,7 +55,14 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("foveal")) / "built"
 
 
-def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: Unpack[BuildOptions]) -> Scene:
+def load(
+    source: Source | Scene,
+    /,
+    *,
+    shadow: PathLike | None = None,
+    progress: Progress = SILENT,
+    **options: Unpack[BuildOptions],
+) -> Scene:
     """A scene of anything that can be shown: how every verb that shows or copies a scene begins.
 
     Parameters
@@ -67,14 +70,22 @@ def load(source: Source | Scene, /, *, progress: Progress = SILENT, **options: U
     source : Scene, path, TriMesh or PolyMesh
         A scene is returned as it is. A path is of a scene.json, a `.fov`, or a mesh file; a mesh, in a
         file or in memory, is built into the user's cache unless it is there.
+    shadow
+        A `.fov` that `foveal.shadow` made, which becomes the scene's light.
     progress, **options
         As for `build`.
 
     Raises
     ------
     FovealError
-        As for `prepare` and `read_scene`.
+        As for `prepare`, `read_scene` and `light_file`.
     """
+    if shadow is not None:
+        light_file(shadow)  # before minutes of building
+    return with_light(_load(source, progress, options), shadow)
+
+
+def _load(source: Source | Scene, progress: Progress, options: BuildOptions) -> Scene:
     if isinstance(source, Scene):
         refuse_shaping(f"the scene {source.title!r}", options)
         return source

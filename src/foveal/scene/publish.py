@@ -8,9 +8,10 @@ from foveal.base.errors import FovealError
 from foveal.base.files import PathLike, is_filled, refuse_unwritable, whole_folder
 from foveal.base.progress import SILENT, Progress
 
+from .asset_names import asset_names
 from .build import BuildOptions
 from .prepare import load
-from .scene import Scene, asset_names, scene_json
+from .scene import Scene, scene_json
 from .source import Source
 from .viewer_files import viewer_files
 
@@ -45,6 +46,7 @@ def publish(
     *,
     force: bool = False,
     viewer: PathLike | None = None,
+    shadow: PathLike | None = None,
     progress: Progress = SILENT,
     **options: Unpack[BuildOptions],
 ) -> Path:
@@ -60,6 +62,8 @@ def publish(
         Replace an earlier publication.
     viewer
         A folder with a built viewer; by default the one that comes with foveal.
+    shadow
+        A `.fov` that `shadow` made: the light of the scene, in place of its own.
     progress, **options
         As for `build`.
 
@@ -87,12 +91,12 @@ def publish(
     folder = Path(folder)
     _refuse_folder(folder, force=force)
     files = viewer_files(viewer)  # if it is missing, say so before minutes of building
-    scene = load(source, progress=progress, **options)
+    scene = load(source, shadow=shadow, progress=progress, **options)
     inside = folder.resolve()
-    for layer in scene.layers:
-        if layer.path.resolve().is_relative_to(inside):
+    for asset in scene.assets:
+        if asset.resolve().is_relative_to(inside):
             raise FovealError(
-                f"{folder}: the scene's own {layer.path.name} lies in this folder. Name another one."
+                f"{folder}: the scene's own {asset.name} lies in this folder. Name another one."
             )
     for layer in scene.layers:
         if layer.refinement is not None and layer.refinement.scheme not in _OF_THE_PAGE:

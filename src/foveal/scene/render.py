@@ -16,12 +16,14 @@ from foveal.view.camera import Camera
 
 from .build import BuildOptions, up_of
 from .cage_file import read_cage
+from .lighting import lighting, lighting_of
 from .prepare import load
 from .scene import Layer, Scene
 from .source import Source, checked, triangles_of
 
 if TYPE_CHECKING:
-    from foveal.raster import Picture
+    from foveal.raster import Picture, SceneLight
+    from foveal.shadows import ShadowMap
 
 __all__ = ["draw", "frame", "home", "read_camera", "render"]
 
@@ -41,6 +43,9 @@ def render(
     size: tuple[int, int] | None = None,
     error_px: float = 1.0,
     triangles: int | None = None,
+    shadow: "ShadowMap | PathLike | None" = None,
+    shadow_filter: str | None = None,
+    shadow_image: int = 0,
     progress: Progress = SILENT,
     **options: Unpack[BuildOptions],
 ) -> "Picture":
@@ -62,6 +67,14 @@ def render(
         How wrong the surface may look, in pixels.
     triangles : int, optional
         At most about this many for each layer, spent where the eye is.
+    shadow : ShadowMap or path, optional
+        The light to draw it in, with its shadows; by default the scene's, or one that hangs on the camera.
+    shadow_filter : str, optional
+        "hard": one pixel of the shadow map; "pcf3", "pcf5": the mean of 3 x 3 or 5 x 5; "filtered": at the
+        level of the map that fits the picture's pixels; "soft": the mean over a stack's images. By default
+        "soft" in the light of a surface, else "pcf3".
+    shadow_image : int
+        Of a stack along a path, which image: the time of day.
     progress, **options
         As for `build`.
 
@@ -74,7 +87,7 @@ def render(
     Raises
     ------
     FovealError
-        If the source or the camera file cannot be used, or the output not be written.
+        If the source, the camera file or the shadow cannot be used, or the output not be written.
 
     Examples
     --------
@@ -95,15 +108,23 @@ def render(
         camera = read_camera(camera)
     if camera is not None and size is not None:
         camera = camera.resized(*size)
+    light = lighting(shadow, shadow_filter, shadow_image)
     if not isinstance(source, Scene):
         source = checked(source)
     if isinstance(source, (TriMesh, PolyMesh)) and options.get("scheme") is None:
         eye = camera or home([source.positions], up=up_of(options), size=size or _SIZE)
-        picture = _opaque(triangles_of(source), eye, None, progress)
+        picture = _opaque(triangles_of(source), eye, None, light, 0.0, progress)
     else:
         scene = load(source, progress=progress, **options)
         eye = camera or frame(scene, size=size or _SIZE)
-        picture = draw(scene, eye, error_px=error_px, triangles=triangles, progress=progress)
+        light = light or lighting_of(scene, shadow_filter, shadow_image)
+        picture = draw(
+            *(scene, eye),
+            light=light,
+            error_px=error_px,
+            triangles=triangles,
+            progress=progress,
+        )
     if output is not None:
         write_png(picture, output)
     return picture
@@ -160,11 +181,15 @@ def draw(
     camera: Camera,
     /,
     *,
+    light: "SceneLight | None" = None,
     error_px: float = 1.0,
     triangles: int | None = None,
     progress: Progress = SILENT,
 ) -> "Picture":
-    """Draw the visible layers of a scene; what `render` says of options and picture holds."""
+    """Draw the visible layers of a scene; what `render` says of options and picture holds.
+
+    The light is none of the scene's own: `lighting_of` gives that.
+    """
     from foveal import multires
     from foveal.lod.select import cut
 
@@ -183,15 +208,24 @@ def draw(
                 asset.graph, _moved(camera, -asset.origin), error_px=error_px, triangle_budget=triangles
             )
             meshes.append(asset.mesh_of(seen.expanded))
-    return _opaque(_joined(meshes), camera, scene.background, progress)
+    return _opaque(_joined(meshes), camera, scene.background, light, error_px, progress)
 
 
-def _opaque(mesh: TriMesh, camera: Camera, background: str | None, progress: Progress) -> "Picture":
+def _opaque(
+    mesh: TriMesh,
+    camera: Camera,
+    background: str | None,
+    light: "SceneLight | None",
+    error_px: float,
+    progress: Progress,
+) -> "Picture":
     """On a background of one colour, or the viewer's light one; without the channel of opacity."""
     from foveal import raster
 
     behind = _rgb(background) if background else raster.gradient(camera)
-    picture = raster.picture(mesh, camera, background=behind, progress=progress)
+    picture = raster.picture(
+        mesh, camera, background=behind, light=light, error_px=error_px, progress=progress
+    )
     return raster.Picture.of(picture[..., :3], camera)
 
 

@@ -3,11 +3,13 @@
     {"version": 1,
      "title": "Statue",
      "layers": [{"name": "statue", "asset": "data/statue.fov", "visible": true}],
+     "light": {"asset": "data/shadow.fov"},
      "views": [{"name": "front", "camera": {"position": [0, 0, 5], "target": [0, 0, 0]}}],
      "background": "#20242a"}
 
-`title`, `visible`, `views` and `background` may be left out. A layer of a control mesh may have what
-`refinement.py` keeps (`scheme`, `criteria`, `positions`, `budget`, `rate`), in place of what its file says.
+`title`, `visible`, `light` (a file that `foveal shadow` made), `views` and `background` may be left out. A
+layer of a control mesh may have what `refinement.py` keeps (`scheme`, `criteria`, `positions`, `budget`,
+`rate`), in place of what its file says.
 An asset is a path relative to the folder of the scene.json, with forward slashes, that does not leave it: a
 scene that came from elsewhere must not make a server give out other files. Keys that are not known are
 ignored, for what later versions add.
@@ -28,13 +30,14 @@ from foveal.view.camera import Camera
 from .cage_file import KIND as CAGE
 from .cage_file import control_mesh
 from .refinement import Refinement, RefineOptions, refinement_json, refinement_of
+from .scene_light import KIND as SHADOW
+from .scene_light import light_file
 
-__all__ = ["Layer", "Scene", "View", "asset_names", "read_scene", "scene_json", "scene_of", "write_scene"]
+__all__ = ["Layer", "Scene", "View", "read_scene", "scene_json", "scene_of", "write_scene"]
 
 VERSION = 1
 # What no name may hold: control characters, and halves of characters, which no UTF-8 can say.
 _UNSAYABLE = re.compile("[\x00-\x1f\x7f-\x9f\ud800-\udfff]")
-_RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +84,20 @@ class Scene:
         Named cameras.
     background : str or None
         sRGB as "#rrggbb"; None lets the viewer choose by its dark or light dress.
+    light : Path or None
+        The `.fov` of a light's shadows; None has the eye carry the light.
     """
 
     title: str
     layers: tuple[Layer, ...]
     views: tuple[View, ...] = ()
     background: str | None = None
+    light: Path | None = None
+
+    @property
+    def assets(self) -> tuple[Path, ...]:
+        """All files: of the layers, and of the light."""
+        return (*(layer.path for layer in self.layers), *([self.light] if self.light else []))
 
 
 def scene_of(path: PathLike, /, *, title: str | None = None, options: RefineOptions | None = None) -> Scene:
@@ -119,6 +130,10 @@ def _refinement(path: Path) -> Refinement | None:
     with open_container(path) as file:
         if file.kind == CAGE:
             return control_mesh(file).refinement
+        if file.kind == SHADOW:
+            raise FovealError(
+                f"{path}: it holds the shadows of a light, and no surface. Name a mesh, with --shadow {path}."
+            )
         file.expect("multires", 1)
         return None
 
@@ -156,7 +171,16 @@ def read_scene(path: PathLike, /) -> Scene:
         tuple(_layer(layer, f'layer {n} of "layers"', path) for n, layer in enumerate(layers, 1)),
         tuple(_view(view, n, path) for n, view in enumerate(_list(data, "views", path), 1)),
         background,
+        _light(data.get("light"), path),
     )
+
+
+def _light(data: Any, path: Path) -> Path | None:
+    if data is None:
+        return None
+    if not isinstance(data, dict) or not isinstance(data.get("asset"), str):
+        raise FovealError(f'{path}: "light" needs an "asset", the path of a file by \'foveal shadow\'.')
+    return light_file(_contained(data["asset"], '"light"', path))
 
 
 def _list(data: Mapping[str, Any], key: str, path: Path) -> list[Any]:
@@ -212,32 +236,6 @@ def _view(data: Any, number: int, path: Path) -> View:
     return View(name, Camera.from_json(data.get("camera"), name=f"{path}: view {name!r}"))
 
 
-def asset_names(scene: Scene, /) -> dict[Path, str]:
-    """A file name for each asset, after its layer, safe in a URL and on any file system, no two alike.
-
-    Examples
-    --------
-    >>> layers = (Layer("My Statue", Path("x/a.fov")), Layer("my statue", Path("y/a.fov")))
-    >>> list(asset_names(Scene("two", layers)).values())
-    ['My-Statue.fov', 'my-statue-2.fov']
-    """
-    names: dict[Path, str] = {}
-    taken: set[str] = set()
-    for layer in scene.layers:
-        if layer.path in names:  # one asset may be in two layers
-            continue
-        stem = re.sub("[^A-Za-z0-9_.-]+", "-", layer.name).strip("-.")[:80] or "asset"
-        if stem.lower() in _RESERVED:
-            stem = f"{stem}-asset"
-        name, number = stem, 1
-        while name.lower() in taken:  # Windows and macOS do not tell cases apart
-            number += 1
-            name = f"{stem}-{number}"
-        taken.add(name.lower())
-        names[layer.path] = f"{name}.fov"
-    return names
-
-
 def scene_json(
     scene: Scene, addresses: Mapping[Path, str], /, *, live: Mapping[Path, str] | None = None
 ) -> bytes:
@@ -257,6 +255,8 @@ def scene_json(
         ],
         "views": [{"name": view.name, "camera": view.camera.to_json()} for view in scene.views],
     }
+    if scene.light is not None:
+        data["light"] = {"asset": addresses[scene.light]}
     if scene.background is not None:
         data["background"] = scene.background
     return (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode()
@@ -272,12 +272,11 @@ def write_scene(scene: Scene, path: PathLike, /) -> None:
     """
     path = Path(path)
     folder = path.parent.resolve()
-    for layer in scene.layers:
-        if not layer.path.resolve().is_relative_to(folder):
+    for asset in scene.assets:
+        if not asset.resolve().is_relative_to(folder):
             raise FovealError(
-                f"{path}: the asset {layer.path} lies outside this folder. "
-                "Move it there, or use 'foveal publish'."
+                f"{path}: the asset {asset} lies outside this folder. Move it there, or use 'foveal publish'."
             )
-    addresses = {p.path: p.path.resolve().relative_to(folder).as_posix() for p in scene.layers}
+    addresses = {asset: asset.resolve().relative_to(folder).as_posix() for asset in scene.assets}
     with whole_file(path) as out:
         out.write(scene_json(scene, addresses))

@@ -26,6 +26,7 @@ def view(
     port: int | None = None,
     open_browser: bool | None = None,
     viewer: PathLike | None = None,
+    shadow: PathLike | None = None,
     progress: Progress = SILENT,
     **options: Unpack[BuildOptions],
 ) -> Running:
@@ -43,6 +44,8 @@ def view(
         By default, where there is a display and this is no notebook, which shows the viewer inline.
     viewer
         A folder with a built viewer; by default the one that comes with foveal.
+    shadow
+        A `.fov` that `foveal.shadow` made: the light of the scene, in place of its own.
     progress, **options
         As for `build`.
 
@@ -69,7 +72,7 @@ def view(
     """
     viewer_files(viewer)  # if it is missing, say so before minutes of building; so for the address
     refuse_address(host, port)
-    scene = load(source, progress=progress, **options)
+    scene = load(source, shadow=shadow, progress=progress, **options)
     running = start(scene, host=host, port=port, viewer=viewer, progress=progress)
     if open_browser is None:
         open_browser = "ipykernel" not in sys.modules and can_open_browser()

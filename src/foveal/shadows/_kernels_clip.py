@@ -1,8 +1,6 @@
 # mypy: allow-untyped-defs, allow-untyped-calls
 """Triangles cut to what lies around a map and before the light, in homogeneous places (X, Y, Z, W)."""
 
-import numpy as np
-
 from foveal.base.jit import kernel
 
 CORNERS = 8  # of a triangle cut by five planes
@@ -26,7 +24,7 @@ def inside(p, plane, nearest):
 
 @kernel
 def cut(triangles, edges, nearest, next_edge, places, numbers, polygon, names, other, other_names):
-    """Cut (m, 3, 4) triangles into (k, 3, 4) `places`, (k, 3) `numbers` of edges; k and the next free number.
+    """Cut (m, 3, 4) triangles into (k, 3, 4) `places`, (k, 3) `numbers` of edges; k.
 
     What two triangles share is cut at the same places, to the bit. Edges that arise get numbers from
     `next_edge` on. With empty `places` it counts alone.
@@ -69,7 +67,7 @@ def cut(triangles, edges, nearest, next_edge, places, numbers, polygon, names, o
             made += 1
             if i < count - 2:
                 next_edge += 1
-    return made, next_edge
+    return made
 
 
 @kernel
@@ -89,17 +87,16 @@ def between(p, q, a, b, out):
 
 
 @kernel
-def is_beyond(triangles, nearest, out):
+def sort_out(seen, faces, nearest, out):
     """0 for a triangle inside all planes, 1 for one to be cut, 2 for one wholly outside one of them."""
-    for t in range(len(triangles)):
+    for t in range(len(faces)):
         out[t] = 0
         for plane in range(5):
             outside = 0
             for i in range(3):
-                outside += 1 if inside(triangles[t, i], plane, nearest) < 0 else 0
+                outside += 1 if inside(seen[faces[t, i]], plane, nearest) < 0 else 0
             if outside == 3:
                 out[t] = 2
                 break
             if outside > 0:
                 out[t] = 1
-    return np.int64(0)

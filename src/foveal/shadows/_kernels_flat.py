@@ -136,3 +136,67 @@ def edge_meets(corners, t, a, x0, y0, x1, y1):
     inside = dx * ((y1 if dx > 0 else y0) - ay) - dy * ((x0 if dy > 0 else x1) - ax)
     outside = dx * ((y0 if dx > 0 else y1) - ay) - dy * ((x1 if dy > 0 else x0) - ax)
     return inside >= 0 and outside <= 0
+
+
+@lean
+def lay(flat, seen, faces, edges, is_closed, wanted, is_mirrored, places):
+    """Lay out triangles of homogeneous places (n, 4), those that are `wanted` and of an area; how many.
+
+    `places` is how many there are along the side of a map. Where right, up and the way of the light are
+    right-handed, `is_mirrored`, fronts are seen clockwise.
+    """
+    at = 0
+    for t in range(len(faces)):
+        if not wanted[t]:
+            continue
+        for k in range(3):
+            p = faces[t, k]
+            flat.corners[at, 2 * k] = np.int32(np.rint(seen[p, 0] / seen[p, 3] * places))
+            flat.corners[at, 2 * k + 1] = np.int32(np.rint(seen[p, 1] / seen[p, 3] * places))
+        a, b, c = faces[t]
+        first, second, third = edges[t]
+        area = edge_at(flat.corners, at, 0, 1, np.int64(flat.corners[at, 4]), np.int64(flat.corners[at, 5]))
+        if area == 0:
+            continue
+        is_turned = area < 0
+        if is_turned:
+            b, c = c, b
+            first, second, third = -third, -second, -first
+            area = -area
+            for k in range(2):
+                flat.corners[at, 2 + k], flat.corners[at, 4 + k] = (
+                    flat.corners[at, 4 + k],
+                    flat.corners[at, 2 + k],
+                )
+        flat.edges[at, 0] = first
+        flat.edges[at, 1] = second
+        flat.edges[at, 2] = third
+        depths = (step_of(seen[a, 2]), step_of(seen[b, 2]), step_of(seen[c, 2]))
+        flat.depths[at, 0] = min(depths[0], min(depths[1], depths[2]))
+        flat.depths[at, 1] = max(depths[0], max(depths[1], depths[2]))
+        if flat.lens[0] != 0:
+            lay_plane(flat, at, area, 1 / seen[a, 3], 1 / seen[b, 3], 1 / seen[c, 3])
+        else:
+            lay_plane(flat, at, area, seen[a, 2], seen[b, 2], seen[c, 2])
+        is_front = is_turned == is_mirrored
+        flat.sides[at] = SHEET if not is_closed[t] else FRONT if is_front else BACK
+        at += 1
+    return at
+
+
+@lean
+def step_of(depth):
+    """The step of a depth; that of no surface is the last, which means that nothing is hit."""
+    return np.int64(min(max(np.floor(depth * STEPS), 0.0), STEPS - 2))
+
+
+@lean
+def lay_plane(flat, t, area, a, b, c):
+    """The plane through what is measured at the corners."""
+    x1 = np.float64(flat.corners[t, 2]) - flat.corners[t, 0]
+    y1 = np.float64(flat.corners[t, 3]) - flat.corners[t, 1]
+    x2 = np.float64(flat.corners[t, 4]) - flat.corners[t, 0]
+    y2 = np.float64(flat.corners[t, 5]) - flat.corners[t, 1]
+    flat.planes[t, 0] = a
+    flat.planes[t, 1] = ((b - a) * y2 - (c - a) * y1) / area
+    flat.planes[t, 2] = ((c - a) * x1 - (b - a) * x2) / area

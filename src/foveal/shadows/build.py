@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -119,7 +120,8 @@ def build(
         if light.is_stack:
             made = [
                 tree_of_stack(
-                    *(flats, len(projections), levels),
+                    [partial(flatten, casters, projection) for projection in projections],
+                    levels,
                     executor=pool,
                     is_strict=is_strict,
                     most=most,
@@ -139,7 +141,8 @@ def build(
                 for flat in flats
             ]
     times["tracing"] -= times["projecting"]
-    if all(tree.root == LEAF and tree.values[0] == FAR for tree in made):
+    is_all_lit = all(tree.root == LEAF and tree.values[0] == FAR for tree in made)
+    if is_all_lit and not any(len(flatten(casters, projection).corners) for projection in projections):
         raise FovealError("the light meets nothing: no part of the model is where it shines.")
     return ShadowMap(light, projections, tuple(made), times=times)
 

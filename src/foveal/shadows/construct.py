@@ -1,12 +1,13 @@
 """From casters and a projection to a tree: squares of the map on all processors, then what is above them."""
 
-import queue
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from foveal.base.errors import FovealError
 from foveal.base.progress import SILENT, Progress
 from foveal.base.tasks import Executor, ordered_map, thread_count
 
@@ -22,6 +23,9 @@ from .tree import Tree
 
 __all__ = ["pixels_of_triangles", "tree_of_pixels", "tree_of_stack", "tree_of_triangles"]
 
+MOST_NODES = 1 << 28
+"""Nodes under construction at most: 2.4 GB. A closed scene of 1.5 million triangles at a million pixels
+a side takes a quarter."""
 _AHEAD = 8
 _CODES = 1 << 16
 _HITS = 1 << 14
@@ -49,24 +53,38 @@ def tree_of_triangles(
     """The tree of a map of 2^levels pixels a side, from triangles."""
     top = min(7, max(0, levels - 8))
     squares = _dealt(flat, levels, top)
-    scratch: queue.SimpleQueue[_Scratch] = queue.SimpleQueue()
-    for _ in range(thread_count() + _AHEAD):
-        scratch.put(_Scratch())
+    scratch = _Pool()
 
     def make(square: int) -> Part:
-        mine = scratch.get()
-        try:
-            size = (square, levels - top, PLACE_BITS - levels)
-            return mine.part(flat, squares.of(square), *size, is_strict, is_sparse, most)
-        finally:
-            scratch.put(mine)
+        triangles = squares.of(square)
+        # Of its own, so that what is read again and again is together.
+        own = flat._replace(
+            corners=flat.corners[triangles],
+            planes=flat.planes[triangles],
+            depths=flat.depths[triangles],
+            edges=flat.edges[triangles],
+            sides=flat.sides[triangles],
+        )
+        with scratch.taken() as mine:
+            return mine.part(own, square, levels - top, PLACE_BITS - levels, is_strict, is_sparse, most)
 
     with progress.stage("Tracing depth", float(4**top)) as stage:
         parts = []
+        nodes = 0
         for part in ordered_map(executor, make, range(4**top), ahead=_AHEAD):
             parts.append(part)
+            nodes += len(part.codes)
+            _refuse_too_many(nodes)
             stage.advance()
     return joined(parts, levels, top, children=4, most=most, executor=executor)
+
+
+def _refuse_too_many(nodes: int) -> None:
+    if nodes > MOST_NODES:
+        raise FovealError(
+            f"the tree would have more than {MOST_NODES} nodes, more than memory is meant for: too much of "
+            "the model is sheets or grazed by the light. Take a lower resolution, or exits 'surface'."
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,21 +117,9 @@ class _Scratch:
         self.up = empty_up(self._codes, levels=20, children=4)
         self.work = _work(self._hits, tiles.BLOCK**2, self._lists)
 
-    def part(
-        self,
-        flat: Flat,
-        triangles: NDArray[np.int32],
-        *options: int,
-    ) -> Part:
-        # Of its own, so that what is read again and again is together.
-        own = flat._replace(
-            corners=flat.corners[triangles],
-            planes=flat.planes[triangles],
-            depths=flat.depths[triangles],
-            edges=flat.edges[triangles],
-            sides=flat.sides[triangles],
-        )
-        count = len(triangles)
+    def part(self, flat: Flat, /, *options: int) -> Part:
+        """The stream of a square from all triangles that meet it."""
+        count = len(flat.corners)
         while 2 * count > self._lists or count > self._hits:
             self._lists *= 2
             self._hits = max(self._hits, self._lists)
@@ -121,14 +127,32 @@ class _Scratch:
         while True:
             clear(self.up)
             self.work.lists[:count] = np.arange(count, dtype=np.int32)
-            state = tiles.up_from_triangles(self.up, own, self.work, count, *options)
+            state = tiles.up_from_triangles(self.up, flat, self.work, count, *options)
             if state == tiles.DONE:
                 break
             self._codes *= 2 if state == tiles.NO_STREAM else 1
+            _refuse_too_many(self._codes)
             self._lists *= 2 if state == tiles.NO_LIST else 1
             self._hits = max(self._hits, self._lists)
             self._make()
         return part_of(self.up)
+
+
+class _Pool:
+    """Scratch for as many squares as are under way at once, made when first wanted."""
+
+    def __init__(self) -> None:
+        self._free: list[_Scratch] = []
+
+    @contextmanager
+    def taken(self) -> Iterator[_Scratch]:
+        """Some, which is given back after the block."""
+        try:
+            mine = self._free.pop()
+        except IndexError:
+            mine = _Scratch()
+        yield mine
+        self._free.append(mine)
 
 
 def _work(hits: int, pixels_a_block: int, lists: int = 0) -> tiles.Work:
@@ -298,8 +322,7 @@ def _read(part: Part, inherited: int, levels: int, children: int) -> _Lists:
 
 
 def tree_of_stack(
-    flats: Iterator[Flat],
-    images: int,
+    flats: Sequence[Callable[[], Flat]],
     levels: int,
     /,
     *,
@@ -308,14 +331,22 @@ def tree_of_stack(
     most: int = KEPT,
     progress: Progress = SILENT,
 ) -> Tree:
-    """The octree of a stack of maps of 2^levels pixels a side, image by image from triangles."""
+    """The octree of a stack of maps of 2^levels pixels a side, from what makes each image's triangles."""
+    scratch = _Pool()
+
+    def make(flat_of: Callable[[], Flat]) -> Part:
+        with scratch.taken() as mine:
+            return mine.part(flat_of(), 0, levels, PLACE_BITS - levels, is_strict, True, most)
+
     parts = []
-    with progress.stage("Tracing depth", float(images)) as stage:
-        for part in ordered_map(executor, lambda flat: _whole(flat, levels, is_strict, most), flats, ahead=2):
+    with progress.stage("Tracing depth", float(len(flats))) as stage:
+        nodes = 0
+        for part in ordered_map(executor, make, flats, ahead=thread_count() + 1):
             parts.append(part)
+            nodes += len(part.codes)
+            _refuse_too_many(nodes)
             stage.advance()
     sizes = [len(part.codes) for part in parts]
-    nodes = sum(sizes)
     squares = stack.Squares(
         np.empty(nodes, np.int64),
         np.empty(nodes, np.uint32),
@@ -324,13 +355,27 @@ def tree_of_stack(
     )
     for part, root in zip(parts, squares.roots, strict=True):
         stack.squares_of(part.codes, part.bounds, squares, root, np.empty(4 * levels + 8, np.int64))
-    up = empty_up(2 * nodes + 100, levels=levels, children=8)
-    scratch = np.empty((levels + 1, images), np.int64)
-    while not stack.up_from_squares(up, squares, levels, scratch, most):
+    best: Tree | None = None
+    with progress.stage("Stacking images", None):
+        # How far apart images should be, what is smallest says: it is twice the size otherwise (a sun's path
+        # of 32 images), or 1.2 times (an area light, whose images are best side by side).
+        for spread in range(levels - (len(parts) - 1).bit_length() + 1):
+            tree = _stacked(squares, levels, spread, executor, most)
+            if best is not None and _size(tree) >= _size(best):
+                break
+            best = tree
+    assert best is not None
+    return best
+
+
+def _stacked(squares: stack.Squares, levels: int, spread: int, executor: Executor, most: int) -> Tree:
+    up = empty_up(2 * len(squares.first) + 100, levels=levels, children=8)
+    ways = np.empty((levels + 1, len(squares.roots)), np.int64)
+    while not stack.up_from_squares(up, squares, levels, spread, ways, most):
         up = empty_up(2 * len(up.codes), levels=levels, children=8)
-    return joined([part_of(up)], levels, 0, children=8, most=most, executor=executor)
+    tree = joined([part_of(up)], levels, 0, children=8, most=most, executor=executor)
+    return replace(tree, spread=spread)
 
 
-def _whole(flat: Flat, levels: int, is_strict: bool, most: int) -> Part:
-    everything = np.arange(len(flat.corners), dtype=np.int32)
-    return _Scratch().part(flat, everything, 0, levels, PLACE_BITS - levels, is_strict, True, most)
+def _size(tree: Tree) -> int:
+    return len(tree.masks) + len(tree.values)

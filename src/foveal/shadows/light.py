@@ -7,7 +7,8 @@ from typing import Any
 from foveal.base.errors import FovealError
 
 from .area_light import AreaLight
-from .single_lights import Directional, Point, Spot, Sun
+from .point_light import Point
+from .single_lights import Directional, Spot, Sun
 from .sun_path import SunPath
 
 __all__ = ["AreaLight", "Directional", "Light", "Point", "Spot", "Sun", "SunPath", "light_from_json"]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +17,9 @@ from .moving import Moving
 from .pack import Packed, pack
 from .projection import Projection
 from .tree import Tree
+
+if TYPE_CHECKING:
+    from .light import Light, Point
 
 __all__ = ["MOST_FOOTPRINT", "ShadowMap"]
 
@@ -42,7 +45,7 @@ class ShadowMap:
         Maps of what moves, beside the trees; see `with_moving`.
     """
 
-    light: Any
+    light: "Light"
     projections: tuple[Projection, ...]
     trees: tuple[Tree, ...]
     times: dict[str, float] = field(default_factory=dict, compare=False, repr=False)
@@ -251,13 +254,18 @@ class ShadowMap:
 
         write_shadow(self, path)
 
+    def _place(self, image: int) -> int:
+        """Where an image is along the third axis of an octree."""
+        spread = self.trees[0].spread
+        return image << spread if spread >= 0 else image >> -spread
+
     def _parts(self, points: NDArray[np.float64], image: int) -> list[tuple[int, Any]]:
         """Which points each projection is asked about."""
         if not 0 <= image < self.images:
             raise ValueError(f"image must be from 0 to {self.images - 1}, got {image}")
         if self.is_stack or len(self.projections) == 1:
             return [(image, slice(None))]
-        faces = self.light.face(points)
+        faces = cast("Point", self.light).face(points)
         return [(number, np.flatnonzero(faces == number)) for number in range(len(self.projections))]
 
     def _shares(
@@ -280,7 +288,7 @@ class ShadowMap:
                 self.windows[number],
                 level,
                 radius,
-                image,
+                self._place(image),
                 len(self.projections) > 1 and not self.is_stack,
             )
             kernels.lit_shares(packed, *asked, points[part], some, shares)
