@@ -1,4 +1,4 @@
-"""Forms of one shadow map beside each other: the authors' greedy tree, all pixels' trees, plain coders."""
+"""Forms of one shadow map: the authors' greedy tree, other trees from all pixels, coders for any data."""
 
 import zlib
 from collections.abc import Callable
