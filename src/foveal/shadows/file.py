@@ -14,13 +14,14 @@ from foveal.base.version import __version__
 from foveal.container import Container, create, open_container
 
 from .coded import MOST_LEVELS, Counts, decode, encode, parts_of
+from .counts import counts
 from .projection import Projection
-from .tree import INNER, Tree
+from .tree import Tree
 
 if TYPE_CHECKING:
     from .shadow_map import ShadowMap
 
-__all__ = ["is_shadow", "read_parts", "read_shadow", "write_shadow"]
+__all__ = ["read_parts", "read_shadow", "write_shadow"]
 
 KIND, VERSION = "shadow", 1
 
@@ -53,7 +54,7 @@ def write_shadow(shadow_map: "ShadowMap", path: PathLike, /) -> None:
         "images": len(projections) if children == 8 else 1,
         **({"spread": trees[0].spread} if children == 8 else {}),
         "parts": parts,
-        "nodes": _nodes(trees),
+        "nodes": counts(trees)._asdict(),
     }
     coded = [encode(tree, parts) for tree in trees]
     with create(path, kind=KIND, version=VERSION) as writer:
@@ -93,14 +94,6 @@ def read_shadow(
         raise FovealError(f"{source.name}: {error}") from error
 
 
-def is_shadow(path: PathLike, /) -> bool:
-    """Whether a file is a `.fov` that holds a shadow map; what else is wrong its reader says."""
-    if not os.fspath(path).lower().endswith(".fov"):
-        return False
-    with open_container(path) as file:
-        return file.kind == KIND
-
-
 def read_parts(
     file: Container, /, *, levels: int | None = None
 ) -> tuple[Any, tuple[Projection, ...], tuple[Tree, ...]]:
@@ -138,16 +131,6 @@ def _trees(children: int, projections: int) -> int:
 
 def _fits(images: int, spread: int, levels: int) -> bool:
     return spread >= 0 and (images - 1) << spread < 1 << levels
-
-
-def _nodes(trees: tuple[Tree, ...]) -> dict[str, int]:
-    masks = sum(len(tree.masks) for tree in trees)
-    values = sum(len(tree.values) for tree in trees)
-    inner = sum(
-        int(np.bitwise_count(tree.masks & tree.masks >> 1 & 0x5555).sum()) + (tree.root == INNER)
-        for tree in trees
-    )
-    return {"leaf": values - inner, "empty": masks - inner, "inner": inner}
 
 
 def _counts_bytes(counts: Counts) -> bytes:
