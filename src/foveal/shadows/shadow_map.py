@@ -232,10 +232,7 @@ class ShadowMap:
         resolution : int
             Pixels along a side of that map: a power of two.
 
-        Notes
-        -----
-        A tree whose exits are "surface" may say that a thing in the air below a sheet is lit; build with
-        exits="strict" for what moves there.
+        Below open sheets a tree of exits "surface" may light what moves; build it with exits="strict" then.
         """
         moving = None if mesh is None else Moving.of(mesh, self.projections, resolution)
         beside = replace(self, moving=moving)
