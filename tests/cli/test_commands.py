@@ -169,7 +169,7 @@ def test_view_serves_what_it_is_given(run, ball_mesh, tmp_path, monkeypatch, wor
 
 def test_help_names_every_command_and_every_option_has_its_line(run):
     page = run("--help").stdout
-    for command in ("view", "build", "info", "check", "export", "refine", "render", "publish"):
+    for command in ("view", "build", "info", "check", "export", "refine", "render", "shadow", "publish"):
         assert f"\n  {command} " in page
         own = run(command, "--help").stdout
         assert "--debug" in own

@@ -61,5 +61,14 @@ def test_info_compiles_nothing(tmp_path):
     assert not imported_by(code) & HEAVY
 
 
+def test_info_of_shadows_compiles_nothing(tmp_path):
+    path = tmp_path / "shadow.fov"
+    facts = {"levels": 1, "images": 1, "projections": [[]], "light": {"kind": "point"}}
+    with create(path, kind="shadow", version=1) as writer:
+        writer.finish(facts | {"nodes": {"leaf": 1, "empty": 0, "inner": 0}}, b"counts")
+    code = f"from foveal.cli.main import run; sys.argv = ['foveal', 'info', {str(path)!r}]; run()"
+    assert not imported_by(code) & HEAVY
+
+
 def test_serving_compiles_nothing():
     assert not imported_by("import foveal.server") & (HEAVY - {"starlette", "uvicorn"})

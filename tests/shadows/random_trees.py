@@ -12,7 +12,7 @@ def random_tree(random, levels, children, most=200):
     root = INNER if levels and random.random() < 0.9 else LEAF
     masks, values, nodes = [], [1], int(root == INNER)
     for level in range(levels):
-        chance = 0 if level == levels - 1 else 0.4 if nodes < most else 0.05
+        chance = 0 if level == levels - 1 else 0.5 if nodes < most else 0.05
         kinds = random.random((nodes, children)) < 0.5
         kinds = kinds + 2 * (random.random((nodes, children)) < chance)
         blank = ~kinds.any(axis=1)
@@ -37,7 +37,7 @@ def random_tree(random, levels, children, most=200):
 
 def assert_same(a, b):
     """The same numbers, in the same types."""
-    assert (a.levels, a.children, a.root) == (b.levels, b.children, b.root)
+    assert (a.levels, a.children, a.root, a.spread) == (b.levels, b.children, b.root, b.spread)
     for name in ("masks", "mask_starts", "values", "value_starts"):
         found, wanted = getattr(a, name), getattr(b, name)
         assert found.dtype == wanted.dtype, name

@@ -1,5 +1,7 @@
 """The coded tree: lossless for every tree, coarser by any prefix of its chunks, safe on any bytes."""
 
+from itertools import chain
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 from foveal.base.errors import FovealError
 from foveal.shadows.coded import Counts, coarser, decode, encode, parts_of
 from foveal.shadows.tree import EMPTY, FAR, INNER, LEAF, Tree
+from shadows import naive_coded
 from shadows.naive_shadows import tree_of_pixels, value_at
 from shadows.random_trees import assert_same, random_tree
 
@@ -51,6 +54,24 @@ def test_any_tree_comes_back_whatever_its_parts(seed, levels, children, data):
     chunks = encode(tree, parts)
     assert len(chunks) == len(parts)
     assert_same(decode(Counts.of(tree), parts, chunks), tree)
+
+
+@settings(deadline=None, max_examples=30)
+@given(seeds, st.integers(0, 5), st.sampled_from([4, 8]))
+def test_the_bytes_are_those_of_the_spec(seed, levels, children):
+    tree = random_tree(np.random.default_rng(seed), levels, children, most=30)
+    parts = sorted({levels // 2, levels})
+    masks, values = naive_coded.decode(levels, children, tree.root, parts, encode(tree, parts))
+    assert list(chain(*masks)) == tree.masks.tolist()
+    assert list(chain(*values)) == tree.values.tolist()
+
+
+def test_the_bytes_of_real_trees_are_those_of_the_spec(shadow):
+    for tree in (shadow, tree_of_pixels(*scene(16, images=13))):
+        parts = [3, tree.levels]
+        masks, values = naive_coded.decode(tree.levels, tree.children, tree.root, parts, encode(tree, parts))
+        assert list(chain(*masks)) == tree.masks.tolist()
+        assert list(chain(*values)) == tree.values.tolist()
 
 
 @settings(deadline=None)

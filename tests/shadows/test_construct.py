@@ -224,3 +224,18 @@ def test_a_part_inside_out_is_no_solid(pool):
     scene = [inside_out, sheet((-2, -2), (2, 2), -1.0)]
     shadow = build(scene, Directional((0, 0, -1)), resolution=64, executor=pool)
     assert shadow.lookup([[0, 0, 2.01], [0, 0, -0.99], [1.8, 1.8, -0.99]]).tolist() == [True, False, True]
+
+
+def test_images_that_differ_much_are_set_apart(pool):
+    """The sun of a day: as a cube of neighbours the stack would take more than its images one by one."""
+    directions = [(1.5 - 0.4 * i, 0.3, -0.8) for i in range(8)]
+    casters = casters_of(solids())
+    flats = [flatten(casters, Directional(d).projections(casters.positions, 64)[0]) for d in directions]
+    tree = tree_of_stack([lambda flat=flat: flat for flat in flats], 6, executor=pool)
+    assert tree.spread > 0
+    separate = [tree_of_triangles(flat, 6, executor=pool) for flat in flats]
+    assert size(tree) < 1.1 * sum(map(size, separate))
+    values = naive.decoded(tree)[:: 1 << tree.spread]
+    for image, flat in zip(values, flats, strict=False):
+        lower, upper = pixels_of_triangles(flat, 6, executor=pool)
+        assert ((lower <= image) & (image <= upper)).all()

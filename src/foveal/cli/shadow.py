@@ -35,7 +35,7 @@ class ExitsKind(enum.StrEnum):
     strict = "strict"
 
 
-def parse_resolution(text: str) -> int:
+def parse_resolution(said: str | int) -> int:
     """Pixels a side.
 
     Examples
@@ -43,6 +43,7 @@ def parse_resolution(text: str) -> int:
     >>> parse_resolution("65536"), parse_resolution("65,536")
     (65536, 65536)
     """
+    text = str(said)  # the default comes by here, too
     plain = text.replace(",", "").replace("_", "")
     number = int(plain) if plain.isascii() and plain.isdigit() and len(plain) < 20 else 0
     if not 2 <= number <= _MOST or number & (number - 1):

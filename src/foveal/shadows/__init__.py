@@ -6,7 +6,6 @@ Shadows. Computer Graphics Forum 2016.
 
 from .build import build, intervals
 from .light import AreaLight, Directional, Light, Point, Spot, Sun, SunPath, light_from_json
-from .pack import Packed, pack
 from .projection import Projection
 from .shadow_map import ShadowMap
 from .tree import Tree
@@ -15,7 +14,6 @@ __all__ = [
     "AreaLight",
     "Directional",
     "Light",
-    "Packed",
     "Point",
     "Projection",
     "ShadowMap",
@@ -26,5 +24,4 @@ __all__ = [
     "build",
     "intervals",
     "light_from_json",
-    "pack",
 ]

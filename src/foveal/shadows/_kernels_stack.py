@@ -52,10 +52,11 @@ def squares_of(codes, bounds, squares, at, stack):
 
 
 @lean
-def up_from_squares(up, squares, levels, nodes, most):
+def up_from_squares(up, squares, levels, spread, nodes, most):
     """Write the stream of a stack of images of 2^levels pixels a side. False where it has no room for more.
 
-    `nodes` is scratch, (levels + 1, images): which square of each image a cube on the way has.
+    Images are 2^spread apart, with nothing between. `nodes` is scratch, (levels + 1, images): which square of
+    each image a cube on the way has.
     """
     images = len(squares.roots)
     level, code = 0, np.int64(0)
@@ -63,8 +64,10 @@ def up_from_squares(up, squares, levels, nodes, most):
         if not has_room(up):
             return False
         size = levels - level
-        first = third_bits(code) << size  # image
-        last = min(images, first + (1 << size))
+        place = third_bits(code) << size
+        gap = (1 << spread) - 1
+        first = (place + gap) >> spread  # image
+        last = min(images, (place + (1 << size) + gap) >> spread)
         low, high = np.int64(0), np.int64(FAR)
         is_leaf = True
         for image in range(first, last):

@@ -189,6 +189,7 @@ def oblique(seen: Any, slopes: NDArray[np.float64], /) -> tuple[Projection, ...]
     slopes : (n, 2)
         How far each goes to the right and up for a step ahead.
     """
+    # The plane at the median of depths in place of their middle took 0.4 % off a stack: not worth a pass.
     x, y = _ends(slopes)
     window = seen.extremes(0, x), seen.extremes(1, y)
     return tuple(parallel(seen, window, (a, b)) for a, b in slopes.tolist())

@@ -2,10 +2,15 @@
 
 Chances are learnt over a whole tree, so chunks are decoded in their order; a reader may stop after any. What
 is known around a node tells most: which values are beyond its sides, as far as they are decoded yet. Bytes
-against those of the greedy tree in memory, for a closed scene at 4096² and an open one at 2048²:
+against the greedy tree in memory, of a closed scene at 4096² and an open one at 2048²:
 
-| masks with their earlier siblings, values with recent ones | 0.152 | 0.199 |
-| and with the sides' values as guesses                      | 0.119 | 0.168 |
+| entropy of masks by levels, of values' lengths, and their free bits | 0.214 | 0.254 |
+| lzma of masks and values                                            | 0.164 | 0.216 |
+| masks coded with their earlier siblings, values with recent ones    | 0.152 | 0.199 |
+| and with the values beyond their sides                              | 0.115 | 0.165 |
+
+Chances that settle by how often they were met would take 2 % less and a third table; nothing else that was
+tried more than 1 %.
 """
 
 from collections.abc import Iterable, Sequence

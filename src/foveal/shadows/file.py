@@ -1,6 +1,7 @@
 """The `.fov` of kind "shadow": a light, how it sees, and its trees, coded. See spec/container.md."""
 
 import os
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,8 @@ def write_shadow(shadow_map: "ShadowMap", path: PathLike, /) -> None:
     ------
     ValueError
         If a tree is none, or trees and projections are not as many as they should be.
+    FovealError
+        If the file cannot be written, or a stack was read without its finest levels.
     """
     trees, projections = shadow_map.trees, shadow_map.projections
     levels, children = trees[0].levels, trees[0].children
@@ -38,6 +41,8 @@ def write_shadow(shadow_map: "ShadowMap", path: PathLike, /) -> None:
         raise ValueError("trees of one file have the same levels and children")
     if len(trees) != _trees(children, len(projections)):
         raise ValueError(f"{len(projections)} projections and {len(trees)} trees do not fit")
+    if children == 8 and not _fits(len(projections), trees[0].spread, levels):
+        raise FovealError(f"{path}: a stack read without its finest levels cannot be written. Read it whole.")
     parts = parts_of(trees)
     header = {
         "generator": f"foveal {__version__}",
@@ -46,6 +51,7 @@ def write_shadow(shadow_map: "ShadowMap", path: PathLike, /) -> None:
         "levels": levels,
         "children": children,
         "images": len(projections) if children == 8 else 1,
+        **({"spread": trees[0].spread} if children == 8 else {}),
         "parts": parts,
         "nodes": _nodes(trees),
     }
@@ -105,6 +111,9 @@ def read_parts(
     projections = _projections(file)
     trees = _trees(children, len(projections))
     parts = _parts(file, all_levels)
+    spread = _count(file, "spread", 0, all_levels) if children == 8 and "spread" in header else 0
+    if children == 8 and not _fits(len(projections), spread, all_levels):
+        raise _damaged(file, "spread")
     first = file.chunk(0)
     size = len(first) // trees
     if len(file) != 1 + len(parts) * trees or len(first) != trees * 8 * (all_levels + 1):
@@ -115,7 +124,8 @@ def read_parts(
         chunks = [file.chunk(1 + part * trees + tree) for part in range(wanted)]
         counts = _counts_of(first[tree * size : (tree + 1) * size], all_levels, children)
         try:
-            found.append(decode(counts, parts, chunks))
+            read = decode(counts, parts, chunks)
+            found.append(replace(read, spread=spread - (all_levels - read.levels)) if children == 8 else read)
         except FovealError as error:
             raise FovealError(f"{file.name}: {error}") from error
     return header.get("light"), projections, tuple(found)
@@ -124,6 +134,10 @@ def read_parts(
 def _trees(children: int, projections: int) -> int:
     """Quadtrees stand for a projection each; one octree stands for all."""
     return projections if children == 4 else 1
+
+
+def _fits(images: int, spread: int, levels: int) -> bool:
+    return spread >= 0 and (images - 1) << spread < 1 << levels
 
 
 def _nodes(trees: tuple[Tree, ...]) -> dict[str, int]:

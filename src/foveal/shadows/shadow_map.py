@@ -251,6 +251,11 @@ class ShadowMap:
 
         write_shadow(self, path)
 
+    def _place(self, image: int) -> int:
+        """Where an image is along the third axis of an octree."""
+        spread = self.trees[0].spread
+        return image << spread if spread >= 0 else image >> -spread
+
     def _parts(self, points: NDArray[np.float64], image: int) -> list[tuple[int, Any]]:
         """Which points each projection is asked about."""
         if not 0 <= image < self.images:
@@ -280,7 +285,7 @@ class ShadowMap:
                 self.windows[number],
                 level,
                 radius,
-                image,
+                self._place(image),
                 len(self.projections) > 1 and not self.is_stack,
             )
             kernels.lit_shares(packed, *asked, points[part], some, shares)

@@ -43,6 +43,10 @@ class Tree:
         Of each node with a value (LEAF, INNER), in the same order.
     value_starts : (levels + 2,) int64
         The values of level l are `values[value_starts[l]:value_starts[l + 1]]`.
+    spread : int
+        Of a stack: image i is at i 2^spread along the third axis, and nothing is between. Images that differ
+        much, as those of a sun's path, want to be apart: else a part that is plain in one image alone would
+        be cut into cubes of one pixel. Below 0 where finer levels have been left out.
 
     Based on: Scandolo, Bauszat, Eisemann 2016, section 3.2.
     """
@@ -54,3 +58,4 @@ class Tree:
     mask_starts: NDArray[np.int64]
     values: NDArray[np.uint32]
     value_starts: NDArray[np.int64]
+    spread: int = 0

@@ -13,6 +13,7 @@ import { makeHelp } from "./dialogs";
 import { byId } from "./dom";
 import { watchPointer, watchWheel } from "./gestures";
 import { watchKeys } from "./keyboard";
+import type { LightControl } from "./light";
 import { showViews } from "./namedViews";
 import { announce, note, showWarning } from "./notices";
 import { settingsOf } from "./ownSettings";
@@ -40,6 +41,8 @@ export class App {
   readonly #help = makeHelp();
   /** Of layers that are refined where they are looked at, if there are any. */
   refinement: RefinementControl | undefined;
+  /** Of the scene's light, if it has one. */
+  light: LightControl | undefined;
   #settings: Sheet | undefined;
   #state: State = INITIAL;
   readonly #address = new Address(
@@ -101,6 +104,7 @@ export class App {
     const opened = await opening;
     const parts = await this.#partsOf(opened);
     this.stage.open(this.#streamer, parts);
+    void this.#openLight();
     this.stage.navigation.setUp(UP[opened[0]!.info.up]);
     this.stage.navigation.home(false);
     this.#applyState();
@@ -115,6 +119,16 @@ export class App {
     this.#toolbar.update();
     if (this.stage.layers.some((layer) => layer.isWholeFile)) note(WORDS.wholeFile);
     this.stage.invalidate();
+  }
+
+  /** What is shown needs no light of its own: it comes when it comes. */
+  async #openLight(): Promise<void> {
+    const { light } = this.scene;
+    if (!light) return;
+    this.stage.isLightComing = true;
+    const { LightControl } = await import("./light");
+    this.light = new LightControl(this, light);
+    this.#applyState();
   }
 
   async #partsOf(opened: readonly (Asset | Cage)[]): Promise<Part[]> {
@@ -241,6 +255,7 @@ export class App {
       layer.group.visible = this.scene.layers[i]!.isVisible !== state.toggledLayers.includes(i);
     });
     this.refinement?.apply();
+    this.light?.apply();
     applyTheme(state.theme);
     this.#status.isShown = state.isStatusOn;
     this.#toolbar.update();
@@ -255,6 +270,7 @@ export class App {
     addEventListener("online", () => {
       this.#streamer.retry();
       this.refinement?.retry();
+      this.light?.retry();
     });
     document.addEventListener("fullscreenchange", () => this.#toolbar.update());
     watchKeys(this, this.#tools);

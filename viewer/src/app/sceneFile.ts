@@ -19,11 +19,20 @@ export interface NamedView {
   readonly camera: CameraState;
 }
 
+/** A light whose shadows are precomputed. */
+export interface SceneLightFile {
+  /** Address of the `.fov`, absolute. */
+  readonly url: string;
+  /** Names of the layers that are not in it and cast by an ordinary shadow map. */
+  readonly moving: readonly string[];
+}
+
 export interface SceneFile {
   readonly title: string;
   readonly layers: readonly SceneLayer[];
   readonly views: readonly NamedView[];
   readonly background: string | null;
+  readonly light: SceneLightFile | null;
 }
 
 const VERSION = 1;
@@ -85,7 +94,21 @@ export function parseScene(data: unknown, url: string): SceneFile {
   const views = Array.isArray(data.views) ? data.views.flatMap(viewOf) : [];
   const background = typeof data.background === "string" ? data.background : null;
   const title = typeof data.title === "string" && data.title ? data.title : layers[0]!.name;
-  return { title, layers, views, background };
+  return { title, layers, views, background, light: lightOf(data.light, url) };
+}
+
+/** @throws Problem if there is a light that names no asset. */
+function lightOf(light: unknown, url: string): SceneLightFile | null {
+  if (light === undefined || light === null) return null;
+  if (!isObject(light) || typeof light.asset !== "string") {
+    throw new Problem(
+      "foreign",
+      `${nameOf(url)}: the light names no asset. Write it again with: foveal publish`,
+    );
+  }
+  const names = Array.isArray(light.moving) ? light.moving : [];
+  const moving = names.filter((name) => typeof name === "string");
+  return { url: new URL(light.asset, url).href, moving };
 }
 
 /** The same place by the protocol of WebSockets. */

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { isField, pressKey } from "./keys";
+import { NO_LIGHT_CHOICE } from "./lightChoice";
 import { NO_CHOICE } from "./refinementChoice";
 import { fetchScene, parseScene } from "./sceneFile";
 import { fileName } from "./sharing";
@@ -44,6 +45,12 @@ describe("address", () => {
     insetTurn: [
       [150, 35],
       [-90, -12],
+    ],
+    light: [
+      NO_LIGHT_CHOICE,
+      { ...NO_LIGHT_CHOICE, isOn: false },
+      { isOn: true, filter: "5x5", minutes: 870 },
+      { isOn: false, filter: "hard", minutes: 1470 },
     ],
   };
 

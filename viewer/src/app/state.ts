@@ -8,6 +8,7 @@ import type { Triple } from "../format/graph";
 import { FACE_COLOURS, type FaceColours } from "../scene/layer";
 import type { CameraState } from "../scene/navigation";
 import { FIRST_TURN, type Turn, turned } from "../scene/turn";
+import { formatLight, type LightChoice, NO_LIGHT_CHOICE, parseLightChoice } from "./lightChoice";
 import { formatChoice, NO_CHOICE, parseChoice, type RefinementChoice } from "./refinementChoice";
 
 export const BACKGROUNDS = ["auto", "white", "grey", "black"] as const;
@@ -35,6 +36,8 @@ export interface State {
   /** Null for what suits the device. */
   readonly isInsetOn: boolean | null;
   readonly insetTurn: Turn;
+  /** Of a scene's own light. */
+  readonly light: LightChoice;
 }
 
 export const INITIAL: State = {
@@ -52,6 +55,7 @@ export const INITIAL: State = {
   refinement: NO_CHOICE,
   isInsetOn: null,
   insetTurn: FIRST_TURN,
+  light: NO_LIGHT_CHOICE,
 };
 
 const VERSION = "1";
@@ -74,6 +78,8 @@ export function formatState(state: State): string {
   if (state.theme !== INITIAL.theme) parts.push(["t", state.theme]);
   if (state.toggledLayers.length) parts.push(["l", state.toggledLayers.join(",")]);
   parts.push(...refinementParts(state));
+  const light = formatLight(state.light);
+  if (light) parts.push(["h", light]);
   return parts.map(([key, value]) => `${key}=${value}`).join("&");
 }
 
@@ -138,6 +144,7 @@ export function parseState(fragment: string): State | null {
     refinement: parseChoice(keys.get("r")),
     isInsetOn: keys.has("n") ? flag("n", true) : null,
     insetTurn: turnOf(keys.get("o")),
+    light: parseLightChoice(keys.get("h")),
   };
 }
 

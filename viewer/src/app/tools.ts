@@ -42,6 +42,14 @@ export function makeTools(app: App): Tool[] {
     { icon: "spheres", key: "B", ...flag("areSpheresOn", WORDS.spheres), isAbsent: hasNoPatches },
     ...refinementTools(app),
     {
+      icon: "light",
+      name: WORDS.light,
+      key: "D",
+      isAbsent: () => !app.light,
+      isPressed: () => app.state.light.isOn,
+      run: () => app.light?.openPanel(),
+    },
+    {
       icon: "screenshot",
       name: WORDS.screenshot,
       key: "S",

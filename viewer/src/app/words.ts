@@ -7,6 +7,11 @@ export const WORDS = {
   patches: "Patch colours",
   spheres: "Bounding spheres",
   refinement: "Refinement",
+  light: "Light and shadows",
+  ownLight: "The scene's own light",
+  edges: "Shadow edges",
+  timeOfDay: "Time of day",
+  sceneLight: "Back to the scene's own",
   faceColours: "Colour by level",
   inset: "The mesh from elsewhere",
   insetTurns: "The mesh from elsewhere: arrow keys or dragging turn it.",
@@ -95,6 +100,28 @@ export const HELP_KEYS: readonly (readonly [string, string])[] = [
   ["1 – 9", "named views"],
   ["Esc", "close"],
 ];
+
+/** How shadows are looked up. */
+export const FILTER_NAMES = {
+  hard: "Hard",
+  "3x3": "3 × 3 pixels",
+  "5x5": "5 × 5 pixels",
+  smooth: "Smooth",
+  soft: "Soft",
+} as const;
+
+/** Of the light of a scene, by what its file calls it. */
+export const LIGHT_NAMES: Readonly<Record<string, string>> = {
+  directional: "Parallel light",
+  sun: "Sunlight",
+  spot: "A spot light",
+  point: "A light that shines everywhere",
+  area: "A light with a surface",
+  sun_path: "A day's sunlight",
+};
+
+/** Keys for the light of a scene. */
+export const LIGHT_KEYS: typeof HELP_KEYS = [["D", "light and shadows"]];
 
 /** Keys for what is refined where it is looked at. */
 export const REFINEMENT_KEYS: typeof HELP_KEYS = [

@@ -19,6 +19,8 @@ export interface ShadowInfo {
   readonly children: 4 | 8;
   /** Of a stack; else 1. */
   readonly images: number;
+  /** Of a stack: image i is at place i 2^spread of the octree's third axis. */
+  readonly spread: number;
   /** Levels with which chunks end; a map of 2^parts[p] pixels a side is there after 1 + (p + 1) · trees chunks. */
   readonly parts: readonly number[];
   readonly trees: number;
@@ -39,12 +41,16 @@ export function parseShadow(header: Header, name: string): ShadowInfo {
   const projections = header.projections.map((rows) => matrixOf(rows, name));
   if (!areParts(parts, levels)) throw damaged(name);
   const isStack = children === 8;
+  const spread = (isStack && header.spread) || 0;
+  if (!isLevel(spread) || (isStack && (projections.length - 1) * 2 ** spread >= 2 ** levels))
+    throw damaged(name);
   return {
     light: light as Header,
     projections,
     levels,
     children,
     images: isStack ? projections.length : 1,
+    spread,
     parts,
     trees: isStack ? 1 : projections.length,
   };

@@ -8,6 +8,7 @@
 import type { Camera, Group, PerspectiveCamera } from "three";
 import type { Triple } from "../format/graph";
 import type { BackgroundColours } from "./background";
+import type { LightShader } from "./light/shader";
 
 /** What a picture may cost, or does. */
 export interface Cost {
@@ -31,10 +32,10 @@ export interface Look {
 }
 
 /**
- * What a layer is drawn for: the picture, lines over it, the depth under a pixel, the picture from elsewhere; or
- * to have a shader made before its first use.
+ * What a layer is drawn for: the picture, lines over it, the depth under a pixel, the picture from elsewhere, the
+ * shadow it casts; or to have a shader made before its first use.
  */
-export type Pass = "picture" | "wires" | "depth" | "inset" | "warm-up";
+export type Pass = "picture" | "wires" | "depth" | "inset" | "cast" | "warm-up";
 
 export interface Layer {
   readonly name: string;
@@ -57,6 +58,8 @@ export interface Layer {
   readonly isFading: boolean;
   /** Nothing that it wants is on its way. */
   readonly isSettled: boolean;
+  /** Another number whenever its shape in the next picture is another. */
+  readonly version: number;
   /** What was drawn since the last `follow`. */
   readonly drawn: { patches: number; triangles: number };
   /**
@@ -72,6 +75,8 @@ export interface Layer {
   dress(look: Look): void;
   /** What is drawn next is drawn for this. */
   wear(pass: Pass): void;
+  /** So the scene's light shines on it from now on. */
+  lightBy(light: LightShader): void;
   /** What is drawn next is seen by this camera. */
   follow(camera: Camera): void;
   /** The bounding spheres of what is chosen, in the scene's frame. */

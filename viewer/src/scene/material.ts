@@ -1,5 +1,6 @@
 /** The shaders of patches: one for all, with parts switched by defines so that the usual case stays cheap. */
-import { DoubleSide, GLSL3, Matrix4, ShaderMaterial, Vector2, Vector3 } from "three";
+import { DoubleSide, GLSL3, Matrix4, NoBlending, ShaderMaterial, Vector2, Vector3 } from "three";
+import { CAST_FRAGMENT } from "./light/shader";
 import { PLASTER, SHADE_GLSL } from "./shading";
 
 const VERTEX = /* glsl */ `
@@ -66,7 +67,7 @@ void main() {
   vec3 facing = normalize(cross(dFdx(vPosition), dFdy(vPosition))); // always on the side of the eye
   vec3 normal = length(vNormal) < 1e-3 ? facing : normalize(vNormal);
   vec3 srgb = hasTint ? tint : hasColours ? vSrgb : plaster;
-  pixel = vec4(shade(srgb, normal, facing), 1.0);
+  pixel = vec4(shade(srgb, normal, facing, vPosition), 1.0);
 }
 `;
 
@@ -118,6 +119,8 @@ export interface PatchMaterials {
   readonly fading: ShaderMaterial;
   readonly wire: ShaderMaterial;
   readonly depth: ShaderMaterial;
+  /** For the ordinary shadow map. */
+  readonly cast: ShaderMaterial;
   readonly uniforms: PatchUniforms;
 }
 
@@ -138,6 +141,7 @@ export function makeMaterials(): PatchMaterials {
       depthWrite: false,
     }),
     depth: new ShaderMaterial({ ...base, fragmentShader: DEPTH_FRAGMENT }),
+    cast: new ShaderMaterial({ ...base, fragmentShader: CAST_FRAGMENT, blending: NoBlending }),
     uniforms,
   };
 }

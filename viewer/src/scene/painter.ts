@@ -4,6 +4,9 @@ import { Background } from "./background";
 import { MAX_PIXEL_RATIO } from "./device";
 import { Inset } from "./inset";
 import type { Layer, Look, Pass } from "./layer";
+import { MovingMap } from "./light/movingMap";
+import type { SceneLight } from "./light/sceneLight";
+import { lightBy } from "./light/shader";
 import { makeMaterials, type PatchMaterials } from "./material";
 import { Picker } from "./picking";
 import { makeGraphics, waitUntilDrawn } from "./renderer";
@@ -22,6 +25,8 @@ export class Painter {
   readonly #background = new Background();
   readonly #spheres = new SphereLines();
   readonly #picker: Picker;
+  #light: SceneLight | undefined;
+  #moving: { map: MovingMap; layers: readonly Layer[] } | undefined;
   #isWireframe = false;
   #areSpheresOn = false;
   #look: Look | undefined;
@@ -36,6 +41,7 @@ export class Painter {
     this.#scene.matrixWorldAutoUpdate = false;
     this.#scene.onBeforeRender = (_renderer, _scene, camera) => {
       for (const layer of this.layers) layer.follow(camera);
+      this.#light?.follow(camera);
     };
     this.#scene.add(this.#background.mesh, this.#spheres.lines, this.inset.frustum);
   }
@@ -50,6 +56,28 @@ export class Painter {
     if (this.#look) layer.dress(this.#look);
     this.layers.push(layer);
     this.#scene.add(layer.group);
+  }
+
+  /** What the light of a scene is made with. */
+  get renderer(): WebGLRenderer {
+    return this.#renderer;
+  }
+
+  /**
+   * Have this light shine on all layers.
+   *
+   * @param moving - Layers that cast by an ordinary shadow map.
+   */
+  shine(light: SceneLight, moving: readonly Layer[]): void {
+    this.#light = light;
+    if (moving.length) this.#moving = { map: new MovingMap(this.#renderer, light, moving), layers: moving };
+    light.onChange = () => this.#dressByLight(light);
+  }
+
+  #dressByLight(light: SceneLight): void {
+    const { solid, fading, cast } = this.materials;
+    lightBy(light, [solid, fading, cast]);
+    for (const layer of this.layers) layer.lightBy(light);
   }
 
   set look(look: Look) {
@@ -78,6 +106,7 @@ export class Painter {
   draw(camera: PerspectiveCamera, depth: number): void {
     if (this.#areSpheresOn) this.#spheres.update(this.layers.filter((layer) => layer.group.visible));
     this.#renderer.info.reset();
+    this.#drawMoving(camera);
     this.#renderer.autoClear = true;
     this.#renderer.render(this.#scene, camera);
     this.drawn.patches = this.layers.reduce((sum, layer) => sum + layer.drawn.patches, 0);
@@ -111,6 +140,22 @@ export class Painter {
       this.#renderer.autoClear = false;
       this.#renderer.render(this.#scene, camera);
     });
+  }
+
+  /** What moves, as the light sees it. */
+  #drawMoving(camera: PerspectiveCamera): void {
+    const { map, layers } = this.#moving ?? {};
+    if (!map || !layers || !this.#light?.isThere) return;
+    const hidden = this.layers.filter((layer) => layer.group.visible && !layers.includes(layer));
+    for (const { group } of hidden) group.visible = false;
+    this.#withLayersOnly("cast", () => map.draw(this.#scene, camera));
+    for (const { group } of hidden) group.visible = true;
+  }
+
+  /** The graphics are lost, and what was on them. */
+  clear(): void {
+    this.#light?.clear();
+    this.#moving?.map.clear();
   }
 
   #withLayersOnly<T>(pass: Pass, work: () => T): T {

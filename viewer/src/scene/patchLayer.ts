@@ -45,6 +45,7 @@ export class PatchLayer implements Layer {
   readonly hasColours: boolean;
   readonly hasPatches = true;
   readonly drawn = { patches: 0, triangles: 0 };
+  version = 0;
   #areColoursOn = true;
   readonly #selection: Selection;
   readonly #fade: Fade;
@@ -117,6 +118,7 @@ export class PatchLayer implements Layer {
     const meshes = patches.map((patch, i) => this.#makeMesh(patch, node, first + i));
     this.#meshes.set(node, meshes);
     if (meshes.length) this.group.add(...meshes);
+    this.version++;
     this.#available[node] = 1;
   }
 
@@ -166,6 +168,7 @@ export class PatchLayer implements Layer {
       meshes.forEach((mesh, i) => {
         const finer = graph.finer[first + i]!;
         const low = finer >= 0 ? phase[finer]! : 0;
+        if (mesh.visible !== low < high) this.version++;
         mesh.visible = low < high;
         if (!mesh.visible) return;
         const look = mesh.userData as PatchLook;
@@ -176,13 +179,16 @@ export class PatchLayer implements Layer {
     }
   }
 
+  /** The materials are those of all layers of patches. */
+  lightBy(): void {}
+
   dress({ areColoursOn }: Look): void {
     this.#areColoursOn = areColoursOn;
   }
 
   wear(pass: Pass): void {
-    const { wire, depth, fading } = this.materials;
-    const one = { wires: wire, depth, "warm-up": fading, picture: null, inset: null }[pass];
+    const { wire, depth, cast, fading } = this.materials;
+    const one = { wires: wire, depth, cast, "warm-up": fading, picture: null, inset: null }[pass];
     for (const mesh of this.group.children as Mesh[]) {
       if (mesh.visible) mesh.material = one ?? this.#materialOf(mesh.userData as PatchLook);
     }

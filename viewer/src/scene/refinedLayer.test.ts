@@ -154,8 +154,8 @@ describe("a refined layer", () => {
       return [surface, wires, tagged].map(({ visible }) => (visible ? "x" : "-")).join("");
     };
     const looks: [Partial<Look>, Record<Exclude<Pass, "warm-up">, string>][] = [
-      [{}, { picture: "x--", wires: "-x-", depth: "x--", inset: "--x" }],
-      [{ faceColours: "levels" }, { picture: "--x", wires: "---", depth: "x--", inset: "--x" }],
+      [{}, { picture: "x--", wires: "-x-", depth: "x--", cast: "x--", inset: "--x" }],
+      [{ faceColours: "levels" }, { picture: "--x", wires: "---", depth: "x--", cast: "x--", inset: "--x" }],
     ];
     for (const [look, passes] of looks) {
       layer.dress({ ...LOOK, ...look });

@@ -6,6 +6,7 @@ import type { Problem } from "../format/problem";
 import type { RefinementFigures, RefinementSource } from "../stream/refinement";
 import type { Box, Frame } from "./frame";
 import type { Cost, FaceColours, Layer, Look, Pass } from "./layer";
+import { type LightShader, lightBy } from "./light/shader";
 import { makeRefinedMaterials } from "./refinedMaterial";
 import { RefinedPlace } from "./refinedPlace";
 import { SlotMesh } from "./slotMesh";
@@ -42,6 +43,7 @@ export class RefinedLayer implements Layer {
   readonly errorPx = 0;
   readonly drawn = { patches: 0, triangles: 0 };
   isStill = false;
+  version = 0;
   /** What is wanted now. */
   wants: Refinement;
   readonly #materials = makeRefinedMaterials();
@@ -74,6 +76,7 @@ export class RefinedLayer implements Layer {
     asset.source.listen({
       onChange: (changes) => {
         this.#mesh.update(changes, this.#clock);
+        this.version++;
         options.onChange();
       },
       onProblem: (problem) => {
@@ -129,6 +132,7 @@ export class RefinedLayer implements Layer {
   }
 
   show(elapsed: number): void {
+    if (this.isFading) this.version++;
     this.#clock += elapsed / 1000;
     const { uniforms } = this.#materials;
     uniforms.now.value = this.#clock;
@@ -146,6 +150,11 @@ export class RefinedLayer implements Layer {
     this.#materials.surface.polygonOffset = isWireframe;
   }
 
+  lightBy(light: LightShader): void {
+    const { surface, tagged, cast } = this.#materials;
+    lightBy(light, [surface, tagged, cast]);
+  }
+
   #prepare(hasInset: boolean): void {
     const areTagged = this.#faceColours !== "plain";
     this.#mesh.show(this.#isWireframe && !areTagged, areTagged || hasInset);
@@ -157,12 +166,13 @@ export class RefinedLayer implements Layer {
       this.#prepare(true);
     }
     const { surface, wires, tagged } = this.#mesh;
-    const { uniforms, surface: plain, depth } = this.#materials;
+    const { uniforms, surface: plain, depth, cast } = this.#materials;
     const isPicture = pass === "picture" || pass === "warm-up";
     tagged.visible = pass === "inset" || (isPicture && this.#faceColours !== "plain");
     wires.visible = pass === "wires" && this.#faceColours === "plain";
-    surface.visible = pass === "depth" || (isPicture && !tagged.visible);
-    surface.material = pass === "depth" ? depth : plain;
+    const isUnseen = pass === "depth" || pass === "cast";
+    surface.visible = isUnseen || (isPicture && !tagged.visible);
+    surface.material = pass === "depth" ? depth : pass === "cast" ? cast : plain;
     uniforms.areLevels.value = this.#faceColours !== "triplet";
     uniforms.line.value = pass === "inset" ? INSET_LINE : this.#isWireframe ? WIRE_LINE : 0;
   }

@@ -1,6 +1,7 @@
 /** The shaders of a refinement: shaded as patches are (spec/shading.md), with vertices on their way. */
-import { DoubleSide, GLSL3, Matrix4, ShaderMaterial, Vector3 } from "three";
+import { DoubleSide, GLSL3, Matrix4, NoBlending, ShaderMaterial, Vector3 } from "three";
 import { COLOUR_SHIFT, LEVEL_MASK } from "../format/wire";
+import { CAST_FRAGMENT } from "./light/shader";
 import { DEPTH_FRAGMENT } from "./material";
 import { LEVELS, TRIPLET } from "./palette";
 import { PLASTER, SHADE_GLSL } from "./shading";
@@ -42,7 +43,7 @@ ${SHADE_GLSL}
 void main() {
   vec3 facing = normalize(cross(dFdx(vPosition), dFdy(vPosition))); // always on the side of the eye
   vec3 normal = length(vNormal) < 1e-3 ? facing : normalize(vNormal);
-  pixel = vec4(shade(hasColours ? vSrgb : plaster, normal, facing), 1.0);
+  pixel = vec4(shade(hasColours ? vSrgb : plaster, normal, facing, vPosition), 1.0);
 }
 `;
 
@@ -85,7 +86,7 @@ void main() {
   float small = max(width.x, max(width.y, width.z));
   float strength = (1.0 - smoothstep(0.25, 0.7, small)) / (1.0 + 12.0 * small);
   float ink = line * strength * max(near.x, max(near.y, near.z));
-  pixel = vec4(mix(shade(srgb, facing, facing), vec3(0.0), ink), 1.0);
+  pixel = vec4(mix(shade(srgb, facing, facing, vPosition), vec3(0.0), ink), 1.0);
 }
 `;
 
@@ -122,6 +123,8 @@ export interface RefinedMaterials {
   readonly surface: ShaderMaterial;
   readonly wire: ShaderMaterial;
   readonly depth: ShaderMaterial;
+  /** For the ordinary shadow map. */
+  readonly cast: ShaderMaterial;
   readonly tagged: ShaderMaterial;
   readonly uniforms: ReturnType<typeof makeRefinedUniforms>;
 }
@@ -146,6 +149,7 @@ export function makeRefinedMaterials(): RefinedMaterials {
       depthWrite: false,
     }),
     depth: new ShaderMaterial({ ...blended, fragmentShader: DEPTH_FRAGMENT }),
+    cast: new ShaderMaterial({ ...blended, fragmentShader: CAST_FRAGMENT, blending: NoBlending }),
     tagged: new ShaderMaterial({
       ...base,
       vertexShader: TAGGED_VERTEX,

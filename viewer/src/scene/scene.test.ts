@@ -16,9 +16,10 @@ describe("shading", () => {
   );
 
   it("agrees with every golden case", () => {
-    type Case = { colour: Rgb; normal: Rgb; facing: Rgb; shadow?: number; pixel: Rgb };
-    for (const { colour, normal, facing, shadow, pixel } of golden.cases as Case[]) {
-      shade(colour, normal, facing, shadow).forEach((byte, i) => {
+    type Case = { colour: Rgb; normal: Rgb; facing: Rgb; shadow?: number; to_light?: Rgb; pixel: Rgb };
+    const cases: Case[] = [...golden.cases, ...golden.with_light];
+    for (const { colour, normal, facing, shadow, to_light, pixel } of cases) {
+      shade(colour, normal, facing, shadow, to_light).forEach((byte, i) => {
         expect(Math.abs(byte - pixel[i]!)).toBeLessThanOrEqual(1);
       });
     }

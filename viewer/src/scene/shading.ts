@@ -1,4 +1,5 @@
 /** spec/shading.md, twice: as a function one can read and test, and as the shader that does it. */
+import { LIGHT_GLSL } from "./light/shader";
 
 export type Rgb = readonly [number, number, number];
 type Vector = readonly [number, number, number];
@@ -14,12 +15,14 @@ const KEY_STRENGTH = 0.9;
  * The pixel of a point with this sRGB colour and unit normal, in the camera's frame.
  *
  * @param facing - The triangle's own normal, on the side of the eye.
+ * @param shadow - How much of the key light arrives.
+ * @param toLight - Where it comes from: a scene's own light, or the one that hangs on the camera.
  */
-export function shade(colour: Rgb, normal: Vector, facing: Vector, shadow = 1): Rgb {
+export function shade(colour: Rgb, normal: Vector, facing: Vector, shadow = 1, toLight: Vector = KEY): Rgb {
   const side = dot(normal, facing) < 0 ? -1 : 1;
-  const key = Math.max(0, side * dot(normal, KEY));
+  const key = shadow * Math.max(0, side * dot(normal, toLight));
   const fill = 0.5 + 0.5 * side * normal[1];
-  const light = AMBIENT + FILL * fill + KEY_STRENGTH * shadow * key;
+  const light = AMBIENT + FILL * fill + KEY_STRENGTH * key;
   const byte = (c: number): number => Math.round(255 * encode(Math.min(1, decode(c / 255) * light)));
   return [byte(colour[0]), byte(colour[1]), byte(colour[2])];
 }
@@ -57,11 +60,19 @@ export function shadeFast(c: number, light: number): number {
 
 const number = (x: number): string => x.toFixed(8);
 
-/** GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 facing)`, colours from 0 to 1. */
+/**
+ * GLSL of the same: `vec3 shade(vec3 srgb, vec3 normal, vec3 facing, vec3 place)`, colours from 0 to 1, `place` from
+ * the eye. Where IS_LIT is defined the scene may have a light, with its shadows.
+ */
 export const SHADE_GLSL = /* glsl */ `
-vec3 shade(vec3 srgb, vec3 normal, vec3 facing) {
+${LIGHT_GLSL}
+vec3 shade(vec3 srgb, vec3 normal, vec3 facing, vec3 place) {
   vec3 n = dot(normal, facing) < 0.0 ? -normal : normal;
+#ifdef IS_LIT
+  float key = lightKey(n, facing, place, dFdx(place), dFdy(place));
+#else
   float key = max(0.0, dot(n, vec3(${KEY.map(number).join(", ")})));
+#endif
   float fill = 0.5 + 0.5 * n.y;
   float light = ${AMBIENT} + ${FILL} * fill + ${KEY_STRENGTH} * key;
   float root = sqrt(light);

@@ -1,11 +1,13 @@
 /** The picture: camera, layers, budgets and the one loop, which runs only while something changes. */
 import type { Vector3 } from "three";
+import type { LightInfo } from "../format/light";
 import type { Asset } from "../stream/asset";
 import type { Streamer } from "../stream/streamer";
 import { type Box, boxOf, type Frame, frameOf, halfBoxOf } from "./frame";
 import { FrameClock } from "./frameClock";
 import type { InsetPlace } from "./inset";
 import type { Layer, Look } from "./layer";
+import { SceneLight } from "./light/sceneLight";
 import { MotionBudget } from "./motionBudget";
 import { type CameraState, Navigation } from "./navigation";
 import { Painter } from "./painter";
@@ -27,6 +29,9 @@ export type Part = { readonly name: string; readonly isVisible: boolean } & (
   | { readonly box: Box; readonly makeLayer: (frame: Frame) => Layer }
 );
 
+/** Coarser surfaces than this, in pixels, may be in their own finer ones' shadow; they do not stay. */
+const MOST_LIFT_PX = 8;
+
 export class Stage {
   readonly navigation: Navigation;
   readonly painter: Painter;
@@ -40,6 +45,10 @@ export class Stage {
   /** Largest screen error in view, in pixels. */
   errorPx = Number.POSITIVE_INFINITY;
   isLost = false;
+  /** That of the scene, where it has one. */
+  light: SceneLight | undefined;
+  /** More of the light is on its way. */
+  isLightComing = false;
   #feed: PatchFeed | undefined;
   #handle = 0;
   #waiting: (() => void)[] = [];
@@ -83,6 +92,18 @@ export class Stage {
       this.painter.add(layer);
     }
     this.invalidate();
+  }
+
+  /** Have a light shine on all that is shown; some layers cast by an ordinary shadow map. */
+  shine(info: LightInfo, moving: readonly string[]): SceneLight {
+    const { painter } = this;
+    const { frame, halfBox } = this.navigation;
+    this.light = new SceneLight(painter.renderer, info, frame, halfBox, painter.isSoftware);
+    painter.shine(
+      this.light,
+      this.layers.filter(({ name }) => moving.includes(name)),
+    );
+    return this.light;
   }
 
   /** Draw a frame soon. */
@@ -160,10 +181,15 @@ export class Stage {
     this.#prepare();
     if (this.layers.length) this.#draw(); // before, the page's own background is enough
     const isFading = this.layers.some((layer) => layer.isFading);
-    clock.isOn = hasMoved || isFading || clock.isMoving || this.#feed?.hasMore === true;
+    const isBusy = this.light?.isBusy || this.#feed?.hasMore;
+    clock.isOn = hasMoved || isFading || clock.isMoving || isBusy === true;
     if (clock.isOn) this.invalidate();
-    else if (this.layers.length && this.layers.every((layer) => layer.isSettled)) this.#rest();
+    else if (this.#isSettled) this.#rest();
     this.options.onFrame(this);
+  }
+
+  get #isSettled(): boolean {
+    return this.layers.length > 0 && !this.isLightComing && this.layers.every((layer) => layer.isSettled);
   }
 
   /** All that a frame needs before it is drawn. */
@@ -175,6 +201,16 @@ export class Stage {
     this.#choose();
     for (const layer of this.layers) layer.show(this.clock.elapsed);
     this.#feed?.finish();
+    this.#prepareLight();
+  }
+
+  #prepareLight(): void {
+    const { light, navigation, clock } = this;
+    if (!light) return;
+    light.advance(clock.isMoving);
+    const pixelsPerRadian = this.canvas.height / (2 * Math.tan((navigation.camera.fov * Math.PI) / 360));
+    const errorPx = Math.max(this.targetPx, Math.min(this.errorPx, MOST_LIFT_PX));
+    light.lift = errorPx / pixelsPerRadian;
   }
 
   /** Each layer its share of the budgets, what one leaves passed on to the next. */
@@ -227,6 +263,7 @@ export class Stage {
     this.#handle = 0;
     for (const layer of this.layers) layer.clear();
     this.#feed?.forgetAll();
+    this.painter.clear();
     this.options.onLost();
   }
 
