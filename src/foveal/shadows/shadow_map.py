@@ -223,8 +223,8 @@ class ShadowMap:
         """The same shadow with an ordinary depth map beside it of things that move, or None for no such.
 
         They cast on what is static and on each other, and what is static casts on them: lit is what both
-        say is lit. The trees are shared. Below open sheets those of exits "surface" may light what moves; build
-        with exits="strict" then. `resolution` is a power of two: pixels along a side of that map.
+        say is lit. The trees are shared. Below open sheets those of exits "surface" may light what moves;
+        build with exits="strict" then. `resolution`, a power of two, is of that map's side.
         """
         moving = None if mesh is None else Moving.of(mesh, self.projections, resolution)
         beside = replace(self, moving=moving)
