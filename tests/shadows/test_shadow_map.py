@@ -140,7 +140,7 @@ def test_an_image_of_a_stack_is_a_map(stack):
         for k, point in enumerate(points):
             x, y, step = receiver(stack.projections[image].matrix, 6, point)
             is_on_map = 0 <= x < 64 and 0 <= y < 64
-            assert found[k] == (not is_on_map or step <= value_in(stack.packed[0], x, y, image))
+            assert found[k] == (not is_on_map or step <= value_in(stack.packed[0], x, y, stack._place(image)))
 
 
 def test_soft_is_the_mean_of_images(stack):

@@ -12,7 +12,7 @@ import numpy as np
 from foveal.base.jit import inlined, kernel, lean
 
 NOWHERE = -1  # instead of a link
-STACKED = 64  # nodes that wait at most: 3 a level, and a level has at most 20 + 1 below it
+STACKED = 96  # nodes that wait at most: 3 a level and one, and files have at most 24 levels
 IN_STACK = 5  # link, whether the last value is lit, level, x, y
 
 

@@ -53,7 +53,7 @@ def places(window, level, radius, points, normals, out):
     """(n, 3): x, y and step of each receiver; `normals` may be empty."""
     has_normals = len(normals) > 0
     for i in range(len(points)):
-        normal = normals[i if has_normals else 0] if has_normals else points[i]
+        normal = normals[i] if has_normals else points[i]
         out[i] = place(window, level, radius, points[i], normal, has_normals)
 
 

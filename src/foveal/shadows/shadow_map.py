@@ -223,19 +223,8 @@ class ShadowMap:
         """The same shadow with an ordinary depth map beside it of things that move, or None for no such.
 
         They cast on what is static and on each other, and what is static casts on them: lit is what both
-        say is lit. The trees are shared, and nothing of them is computed again.
-
-        Parameters
-        ----------
-        mesh : TriMesh
-            The moving things where they are now, in the axes and unit of the rest.
-        resolution : int
-            Pixels along a side of that map: a power of two.
-
-        Notes
-        -----
-        A tree whose exits are "surface" may say that a thing in the air below a sheet is lit; build with
-        exits="strict" for what moves there.
+        say is lit. The trees are shared. Below open sheets those of exits "surface" may light what moves;
+        build with exits="strict" then. `resolution`, a power of two, is of that map's side.
         """
         moving = None if mesh is None else Moving.of(mesh, self.projections, resolution)
         beside = replace(self, moving=moving)
