@@ -158,8 +158,9 @@ def tiling(rng, kind):
         angles = np.sort(rng.uniform(0, 2 * np.pi, 9))
         assume((np.diff([*angles, angles[0] + 2 * np.pi]) < 2.5).all() and np.diff(angles).min() > 1e-3)
         away = 10.0 ** rng.uniform(2, 9, 9)
-        ring = np.column_stack([np.cos(angles), np.sin(angles)]) * away[:, None]
-        points = np.concatenate([rng.uniform(-8, 8, size=(1, 2)), ring])
+        middle = rng.uniform(-8, 8, size=(1, 2))  # of the angles, too: else some triangle may be turned over
+        ring = middle + np.column_stack([np.cos(angles), np.sin(angles)]) * away[:, None]
+        points = np.concatenate([middle, ring])
         return points, np.array([[0, i + 1, (i + 1) % 9 + 1] for i in range(9)])
     points = rng.uniform(-8, 8, size=(14, 2))
     if kind == "samples":  # corners and edges run through samples
