@@ -32,11 +32,6 @@ export class LightControl {
     return this.#file?.light;
   }
 
-  /** Bytes received. */
-  get receivedBytes(): number {
-    return this.#file?.file.source.received ?? 0;
-  }
-
   get filter(): ShadowFilter {
     const { filter } = this.app.state.light;
     const isArea = this.info?.kind === "area";
