@@ -16,6 +16,7 @@ import { watchKeys } from "./keyboard";
 import type { LightControl } from "./light";
 import { showViews } from "./namedViews";
 import { announce, note, showWarning } from "./notices";
+import { openLight } from "./openLight";
 import { settingsOf } from "./ownSettings";
 import type { RefinementControl } from "./refinement";
 import type { SceneFile } from "./sceneFile";
@@ -25,6 +26,7 @@ import type { Sheet } from "./sheet";
 import { INITIAL, type State } from "./state";
 import { figuresOf, statsOf, sumOf } from "./stats";
 import { StatusLine } from "./statusLine";
+import { subtitleOf } from "./subtitle";
 import { applyTheme, backgroundOf, onDeviceTheme, resolveTheme } from "./theme";
 import { type Tool, Toolbar } from "./toolbar";
 import { makeTools } from "./tools";
@@ -104,31 +106,16 @@ export class App {
     const opened = await opening;
     const parts = await this.#partsOf(opened);
     this.stage.open(this.#streamer, parts);
-    void this.#openLight();
+    void openLight(this, this.scene.light);
     this.stage.navigation.setUp(UP[opened[0]!.info.up]);
     this.stage.navigation.home(false);
     this.#applyState();
     this.#address.read();
-    const polygons = opened.map(({ info }) => ("polygons" in info && info.polygons) || 0);
-    const arePolygons = polygons.every((faces) => faces > 0);
-    const counts = arePolygons ? polygons : opened.map(({ info }) => info.triangles);
-    const total = counts.reduce((sum, faces) => sum + faces, 0);
-    const count = total ? `${total.toLocaleString("en")} ${arePolygons ? WORDS.faces : WORDS.triangles}` : "";
-    byId("subtitle").textContent = this.refinement ? `${count}, ${WORDS.refinedHere}` : count;
+    byId("subtitle").textContent = subtitleOf(opened.map(({ info }) => info));
     showViews(this.scene.views, (camera) => this.stage.setCamera(camera, true));
     this.#toolbar.update();
     if (this.stage.layers.some((layer) => layer.isWholeFile)) note(WORDS.wholeFile);
     this.stage.invalidate();
-  }
-
-  /** What is shown needs no light of its own: it comes when it comes. */
-  async #openLight(): Promise<void> {
-    const { light } = this.scene;
-    if (!light) return;
-    this.stage.isLightComing = true;
-    const { LightControl } = await import("./light");
-    this.light = new LightControl(this, light);
-    this.#applyState();
   }
 
   async #partsOf(opened: readonly (Asset | Cage)[]): Promise<Part[]> {

@@ -32,11 +32,6 @@ export class LightControl {
     return this.#file?.light;
   }
 
-  /** Bytes received. */
-  get receivedBytes(): number {
-    return this.#file?.file.source.received ?? 0;
-  }
-
   get filter(): ShadowFilter {
     const { filter } = this.app.state.light;
     const isArea = this.info?.kind === "area";
@@ -56,9 +51,9 @@ export class LightControl {
     const { stage, state } = this.app;
     if (state.light.isOn && this.#phase === "idle") void this.#open();
     stage.isLightComing = this.#phase === "opening" || this.#load?.isSettled === false;
+    stage.invalidate(); // also if there will be none: who waits for it may go on
     if (!stage.light) return;
     stage.light.look = { isOn: state.light.isOn, filter: this.filter, time: this.#image };
-    stage.invalidate();
   }
 
   /** Of a sun's path that of the time; of an area light one in its midst. */

@@ -65,12 +65,12 @@ export function positionOf(setting: NumberSetting, value: number): number {
   return first + Math.round(Math.min(1, Math.max(0, share)) * (steps - first));
 }
 
-/** The value where the slider stands, in two or three figures. */
+/** The value where the slider stands, in two or three figures or whole. */
 export function valueAt(setting: NumberSetting, position: number): number {
-  const { low, high, isLogarithmic, hasZero } = setting;
+  const { low, high, isLogarithmic, isWhole, hasZero } = setting;
   const first = hasZero ? 1 : 0;
   if (position < first) return 0;
   const share = (position - first) / (stepsOf(setting) - first);
   const value = isLogarithmic ? low * (high / low) ** share : low + (high - low) * share;
-  return Number(value.toPrecision(isLogarithmic ? 2 : 3));
+  return isWhole ? Math.round(value) : Number(value.toPrecision(isLogarithmic ? 2 : 3));
 }
