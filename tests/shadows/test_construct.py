@@ -10,8 +10,9 @@ from foveal.shadows import Directional, Point, Spot, build, intervals
 from foveal.shadows import _kernels_sets as sets
 from foveal.shadows import _kernels_tiles as tiles
 from foveal.shadows.casters import casters_of
-from foveal.shadows.construct import pixels_of_triangles, tree_of_pixels, tree_of_stack, tree_of_triangles
+from foveal.shadows.construct import pixels_of_triangles, tree_of_pixels, tree_of_triangles
 from foveal.shadows.flat import PLACE_BITS, flatten
+from foveal.shadows.stack import tree_of_stack
 from foveal.shadows.topdown import tree_from_the_root
 
 from . import naive_shadows as naive

@@ -17,12 +17,13 @@ from foveal.mesh.trimesh import TriMesh
 from ._kernels_flat import Flat
 from ._kernels_sets import KEPT
 from .casters import Casters, casters_of, winding_number
-from .construct import pixels_of_triangles, tree_of_stack, tree_of_triangles
+from .construct import pixels_of_triangles, tree_of_triangles
 from .flat import flatten
 from .frames import checked_resolution
 from .light import Light
 from .projection import Projection
 from .shadow_map import ShadowMap
+from .stack import tree_of_stack
 from .topdown import tree_from_the_root
 from .tree import FAR, LEAF
 
