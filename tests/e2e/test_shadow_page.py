@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import foveal
-from e2e.lit import LIGHTS, PATH, VIEW, lit_scene, yard_files
+from e2e.lit import PATH, VIEW, lit_scene, yard_files
 from e2e.page import idle, picture
 from e2e.refined import CRITERIA, differs, go, press, slide
 from e2e.static_server import StaticServer
@@ -175,7 +175,3 @@ def test_what_moves_casts_by_an_ordinary_map_and_is_cast_on(open_page, site):
     assert (differs(gone, cast)) > 0.01
     press(page, "d")
     assert page.locator("#light").is_visible()
-
-
-def test_lights_are_all_tried():
-    assert set(LIGHTS) == {"sun", "spot", "point", "area", "path"}
