@@ -7,10 +7,11 @@ from _shadows_scenes import scene
 from _shape import Row
 
 from foveal.base.tasks import threads_unless
-from foveal.shadows import AreaLight, build, pack
+from foveal.shadows import AreaLight, build
 from foveal.shadows.casters import casters_of
 from foveal.shadows.construct import tree_of_triangles
 from foveal.shadows.flat import flatten
+from foveal.shadows.pack import pack
 
 __all__ = ["stack"]
 

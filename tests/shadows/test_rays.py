@@ -62,13 +62,13 @@ def receivers(shadow, triangles, is_solid, count, seed):
                     yield begin + (ends[gap + 1] - share * room) * (end - begin), gap == 0
 
 
-@pytest.mark.parametrize("resolution", [256, 1 << 16])
+@pytest.mark.parametrize("resolution", [256, 1 << 13])
 @pytest.mark.parametrize("scene", [solids, mixed])
 def test_rays_agree(scene, resolution):
     meshes = scene()
     shadow = build(meshes, LIGHT, resolution=resolution)
-    points, is_lit = zip(*receivers(shadow, *soup(meshes), 800, seed=resolution), strict=True)
-    assert len(points) > 1500
+    points, is_lit = zip(*receivers(shadow, *soup(meshes), 500, seed=resolution), strict=True)
+    assert len(points) > 1000
     assert 0.2 < np.mean(is_lit) < 0.9
     np.testing.assert_array_equal(shadow.lookup(np.array(points)), is_lit)
 
@@ -80,7 +80,7 @@ def test_embree_agrees():
     meshes = solids()
     triangles, is_solid = soup(meshes)
     shadow = build(meshes, LIGHT, resolution=4096)
-    points, is_lit = map(np.array, zip(*receivers(shadow, triangles, is_solid, 800, seed=3), strict=True))
+    points, is_lit = map(np.array, zip(*receivers(shadow, triangles, is_solid, 500, seed=3), strict=True))
     scene = scenes.EmbreeScene()
     construction.TriangleMesh(scene, triangles.astype(np.float32))
     to_light = LIGHT.towards(points)
