@@ -1,7 +1,7 @@
 /** The light of a scene: its file, what the visitor chose of it, and its panel. Loaded where a scene has one. */
 import type { LightInfo } from "../format/light";
 import { sentenceOf } from "../format/problem";
-import type { ShadowFilter } from "../scene/light/look";
+import { filtersOf, type ShadowFilter } from "../scene/light/look";
 import type { SceneLight } from "../scene/light/sceneLight";
 import { openShadow, type ShadowFile, ShadowLoad } from "../stream/shadowFile";
 import type { ShadowStage } from "../stream/shadowStage";
@@ -34,9 +34,9 @@ export class LightControl {
 
   get filter(): ShadowFilter {
     const { filter } = this.app.state.light;
-    const isArea = this.info?.kind === "area";
-    if (filter && (filter !== "soft" || isArea)) return filter;
-    return isArea ? "soft" : "3x3";
+    const has = this.info ? filtersOf(this.info) : [];
+    if (filter && has.includes(filter)) return filter;
+    return has.includes("soft") ? "soft" : "3x3";
   }
 
   /** Of a sun's path, the time that is shown. */

@@ -1,6 +1,6 @@
 /** The sheet of a scene's light: whether it shines, how its shadows are looked up, and of a sun's path the time. */
 import type { LightInfo } from "../format/light";
-import { SHADOW_FILTERS } from "../scene/light/look";
+import { filtersOf } from "../scene/light/look";
 import type { App } from "./app";
 import { make } from "./dom";
 import type { LightControl } from "./light";
@@ -33,11 +33,10 @@ export function makeLightPanel(app: App, control: LightControl): Sheet {
       set: (value) => control.choose({ minutes: value, isOn: true }),
     });
   }
-  const filters = SHADOW_FILTERS.filter((filter) => filter !== "soft" || info.kind === "area");
   sheet.addSelection({
     id: "filter",
     label: WORDS.edges,
-    options: filters.map((filter) => [filter, FILTER_NAMES[filter]] as const),
+    options: filtersOf(info).map((filter) => [filter, FILTER_NAMES[filter]] as const),
     get: () => control.filter,
     set: (filter) => control.choose({ filter }),
   });

@@ -9,6 +9,7 @@ const info = (light: object, count: number, children: 4 | 8 = 4): ShadowInfo => 
   levels: 3,
   children,
   images: children === 8 ? count : 1,
+  spread: 0,
   parts: [3],
   trees: children === 8 ? 1 : count,
 });
