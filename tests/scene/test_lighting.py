@@ -134,3 +134,22 @@ def test_what_cannot_be_is_said(shadow):
     assert set(FILTERS) == {"hard", "pcf3", "pcf5", "filtered", "soft"}
     with pytest.raises(FovealError, match="not known"):
         foveal.render(scene(), shadow=shadow, shadow_filter="blurred")
+
+
+def test_what_moves_casts_beside_what_the_light_was_made_for(tmp_path):
+    """A ball that the shadow file knows nothing of shades the floor where it hangs."""
+    foveal.build(floor(), tmp_path / "floor.fov", up="z")
+    ball = icosphere(2)
+    foveal.build(TriMesh(ball.positions * 0.5 + [-0.4, 0, 0.9], ball.faces), tmp_path / "ball.fov", up="z")
+    foveal.shadow(floor(), tmp_path / "light.fov", light=SUN, resolution=256)
+    layers = '[{"name": "floor", "asset": "floor.fov"}, {"name": "ball", "asset": "ball.fov"}]'
+    pictures = []
+    for moving in ('["ball"]', "[]"):
+        path = tmp_path / "scene.json"
+        path.write_text(
+            f'{{"version": 1, "layers": {layers}, "light": {{"asset": "light.fov", "moving": {moving}}}}}'
+        )
+        pictures.append(render(path, camera=CAMERA))
+    shaded, lit = pixel_of((0.5, 0, 0)), pixel_of((-1.5, 0, 0))
+    assert int(pictures[0][shaded][0]) < int(pictures[1][shaded][0]) - 40
+    assert (pictures[0][lit] == pictures[1][lit]).all()

@@ -150,3 +150,20 @@ def test_trees_that_are_not_what_the_header_tells(tmp_path, shadow_file):
         writer.finish(header, chunks[0])
     with pytest.raises(FovealError, match="not what its header tells"):
         foveal.check(tmp_path / "odd.fov")
+
+
+def test_layers_that_move_are_named_by_the_light(lit):
+    data = json.loads(lit.read_bytes())
+    data["light"]["moving"] = ["statue"]
+    lit.write_text(json.dumps(data))
+    scene = read_scene(lit)
+    assert [layer.is_moving for layer in scene.layers] == [True]
+    write_scene(scene, lit)
+    assert json.loads(lit.read_bytes())["light"] == data["light"]
+    with pytest.raises(FovealError, match="no layer that stays"):
+        foveal.shadow(lit, lit.parent / "other.fov", light=Directional((0, 0, -1)), resolution=16)
+    for moving, words in ((["nobody"], "no layer has that name"), ("statue", "must be a list"), ([1], "a list")):
+        data["light"]["moving"] = moving
+        lit.write_text(json.dumps(data))
+        with pytest.raises(FovealError, match=words):
+            read_scene(lit)

@@ -73,6 +73,15 @@ def test_closed_parts():
     assert not casters_of([sheet((0, 0), (1, 1), 0)]).is_closed.any()
 
 
+def test_faces_in_one_place_are_one_sheet():
+    """A leaf drawn from both sides, and one drawn twice; a solid that is there twice stays two."""
+    leaf = sheet((0, 0), (1, 1), 0.0)
+    for other in (leaf, sheet((0, 0), (1, 1), 0.0, is_turned=True)):
+        casters = casters_of([leaf, other])
+        assert (len(casters.faces), casters.is_closed.any()) == (2, False)
+    assert casters_of([ball((0, 0, 0)), ball((0, 0, 0))]).is_closed.sum() == 640
+
+
 def test_a_part_with_a_face_turned_is_open():
     mesh = ball((0, 0, 0))
     faces = mesh.faces.copy()

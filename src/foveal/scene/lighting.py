@@ -1,6 +1,6 @@
 """How a scene's precomputed light falls on what is drawn: where it comes from, and how much arrives."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from foveal.base.errors import FovealError
 from foveal.base.files import PathLike
+from foveal.mesh.trimesh import TriMesh
 
 from .scene import Scene
 
@@ -18,6 +19,7 @@ __all__ = ["FILTERS", "Lighting", "lighting", "lighting_of"]
 
 FILTERS = ("hard", "pcf3", "pcf5", "filtered", "soft")
 """How the pixels of a shadow map are made one answer."""
+_MOVING, _MOVING_CUBE = 2048, 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,11 @@ class Lighting:
             cosines = -(source.towards(points) @ axis) / np.linalg.norm(axis)
             shares = np.where(cosines >= np.cos(angle / 2), shares, np.float32(0))
         return towards, shares
+
+    def with_moving(self, mesh: TriMesh, /) -> "Lighting":
+        """The same light, with what moves before it: as many pixels as in the page."""
+        side = _MOVING_CUBE if len(self.shadow.trees) > 1 else _MOVING
+        return replace(self, shadow=self.shadow.with_moving(mesh, resolution=side))
 
     def _shares(
         self, points: NDArray[np.float64], normals: NDArray[np.float64], spans: NDArray[np.float64]

@@ -16,7 +16,7 @@ from foveal.view.camera import Camera
 
 from .build import BuildOptions, up_of
 from .cage_file import read_cage
-from .lighting import lighting, lighting_of
+from .lighting import Lighting, lighting, lighting_of
 from .prepare import load
 from .scene import Layer, Scene
 from .source import Source, checked, triangles_of
@@ -181,7 +181,7 @@ def draw(
     camera: Camera,
     /,
     *,
-    light: "SceneLight | None" = None,
+    light: Lighting | None = None,
     error_px: float = 1.0,
     triangles: int | None = None,
     progress: Progress = SILENT,
@@ -195,8 +195,8 @@ def draw(
 
     from .refined import refined
 
-    meshes = []
-    for layer in _visible(scene):
+    layers, meshes = _visible(scene), []
+    for layer in layers:
         if layer.refinement is not None:
             cage = dataclasses.replace(
                 read_cage(layer.path), refinement=layer.refinement.chosen({"budget": triangles})
@@ -208,6 +208,9 @@ def draw(
                 asset.graph, _moved(camera, -asset.origin), error_px=error_px, triangle_budget=triangles
             )
             meshes.append(asset.mesh_of(seen.expanded))
+    moving = [mesh for mesh, layer in zip(meshes, layers, strict=True) if layer.is_moving]
+    if light is not None and moving:
+        light = light.with_moving(_joined(moving))
     return _opaque(_joined(meshes), camera, scene.background, light, error_px, progress)
 
 

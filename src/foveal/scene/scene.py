@@ -8,6 +8,7 @@
      "background": "#20242a"}
 
 `title`, `visible`, `light` (a file that `foveal shadow` made), `views` and `background` may be left out. A
+light may have `moving`, names of layers that were not among what cast when it was made. A
 layer of a control mesh may have what `refinement.py` keeps (`scheme`, `criteria`, `positions`, `budget`,
 `rate`), in place of what its file says.
 An asset is a path relative to the folder of the scene.json, with forward slashes, that does not leave it: a
@@ -18,7 +19,7 @@ ignored, for what later versions add.
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -54,12 +55,16 @@ class Layer:
         Whether it is shown at first.
     refinement : Refinement or None
         Of a control mesh, how it is refined; None for any other asset.
+    is_moving : bool
+        Whether it is beside what the scene's light was precomputed for: it casts, and is cast on, by an
+        ordinary shadow map.
     """
 
     name: str
     path: Path
     is_visible: bool = True
     refinement: Refinement | None = None
+    is_moving: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +173,9 @@ def read_scene(path: PathLike, /) -> Scene:
         raise FovealError(f'{path}: "background" must be a colour such as "#20242a", got {background!r}.')
     return Scene(
         _text(data, "title", path.parent.resolve().name, path),
-        tuple(_layer(layer, f'layer {n} of "layers"', path) for n, layer in enumerate(layers, 1)),
+        _moving(
+            [_layer(layer, f'layer {n} of "layers"', path) for n, layer in enumerate(layers, 1)], data, path
+        ),
         tuple(_view(view, n, path) for n, view in enumerate(_list(data, "views", path), 1)),
         background,
         _light(data.get("light"), path),
@@ -181,6 +188,20 @@ def _light(data: Any, path: Path) -> Path | None:
     if not isinstance(data, dict) or not isinstance(data.get("asset"), str):
         raise FovealError(f'{path}: "light" needs an "asset", the path of a file by \'foveal shadow\'.')
     return light_file(_contained(data["asset"], '"light"', path))
+
+
+def _moving(layers: list[Layer], data: Mapping[str, Any], path: Path) -> tuple[Layer, ...]:
+    """The layers, with those that the light names as moving marked so."""
+    light = data.get("light")
+    names = light.get("moving", []) if isinstance(light, dict) else []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise FovealError(f'{path}: "moving" of "light" must be a list of names of layers.')
+    unknown = sorted({*names} - {layer.name for layer in layers})
+    if unknown:
+        raise FovealError(
+            f'{path}: "moving" of "light" names {unknown[0]!r:.60}, and no layer has that name.'
+        )
+    return tuple(replace(layer, is_moving=layer.name in names) for layer in layers)
 
 
 def _list(data: Mapping[str, Any], key: str, path: Path) -> list[Any]:
@@ -256,7 +277,8 @@ def scene_json(
         "views": [{"name": view.name, "camera": view.camera.to_json()} for view in scene.views],
     }
     if scene.light is not None:
-        data["light"] = {"asset": addresses[scene.light]}
+        moving = [layer.name for layer in scene.layers if layer.is_moving]
+        data["light"] = {"asset": addresses[scene.light], **({"moving": moving} if moving else {})}
     if scene.background is not None:
         data["background"] = scene.background
     return (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode()

@@ -225,9 +225,11 @@ def _meshes(source: Checked | Scene, progress: Progress) -> list[TriMesh]:
     if not isinstance(source, Scene):
         with progress.stage("Reading", 1):
             return [_triangles(source, progress)]
-    layers = [layer for layer in source.layers if layer.is_visible]
+    layers = [layer for layer in source.layers if layer.is_visible and not layer.is_moving]
     if not layers:
-        raise FovealError(f"the scene {source.title!r} shows no layer, so nothing casts. Make one visible.")
+        raise FovealError(
+            f"the scene {source.title!r} shows no layer that stays, so nothing casts. Make one visible."
+        )
     with progress.stage("Reading", len(layers)) as stage:
         meshes = []
         for layer in layers:

@@ -47,21 +47,31 @@ def casters_of(meshes: list[TriMesh], /) -> Casters:
     positions, faces = _welded(meshes)
     is_face = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
     faces = np.ascontiguousarray(faces[is_face])
-    after = np.roll(faces, -1, axis=1)
-    is_forward = faces < after
-    keys = np.minimum(faces, after).astype(np.int64) * len(positions) + np.maximum(faces, after)
-    _, number = np.unique(keys.ravel(), return_inverse=True)
-    number = number.reshape(-1, 3)
+    edges = _numbered_edges(faces, len(positions))
+    number = np.abs(edges).astype(np.int64) - 1
     count = int(number.max(initial=-1)) + 1
-    signs = np.where(is_forward, 1, -1)
-    is_even = np.bincount(number.ravel(), signs.ravel(), count) == 0
+    is_even = np.bincount(number.ravel(), np.sign(edges).ravel(), count) == 0
+    is_closed = _closed_parts(number, is_even)
+    same, is_from_both_sides = _alike(faces)
+    is_closed &= ~is_from_both_sides
+    # One of a sheet's faces is enough: as two layers they would be looked at pixel by pixel.
+    kept = is_closed.copy()
+    sheets = np.flatnonzero(~is_closed)
+    kept[sheets[np.unique(same[sheets], return_index=True)[1]]] = True
     return Casters(
         positions,
-        faces,
-        ((number + 1) * signs).astype(np.int32),
-        _closed_parts(number, is_even) & ~_both_sides(faces),
+        np.ascontiguousarray(faces[kept]),
+        np.ascontiguousarray(edges[kept]),
+        is_closed[kept],
         count,
     )
+
+
+def _numbered_edges(faces: NDArray[np.int32], corners: int) -> NDArray[np.int32]:
+    after = np.roll(faces, -1, axis=1)
+    keys = np.minimum(faces, after).astype(np.int64) * corners + np.maximum(faces, after)
+    _, number = np.unique(keys.ravel(), return_inverse=True)
+    return ((number.reshape(-1, 3) + 1) * np.where(faces < after, 1, -1)).astype(np.int32)
 
 
 def winding_number(casters: Casters, point: NDArray[np.float64], /) -> float:
@@ -91,19 +101,18 @@ def _welded(meshes: list[TriMesh]) -> tuple[NDArray[np.float64], NDArray[np.int3
     return ordered[is_new], place[faces]
 
 
-def _both_sides(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Of each face, whether one of the same corners is there that runs them the other way round."""
+def _alike(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """A number for each face, the same for those of the same corners; whether they face both ways."""
     first = faces.argmin(axis=1)
     rows = np.arange(len(faces))
     a, b, c = (faces[rows, (first + k) % 3].astype(np.int64) for k in range(3))
     count = int(faces.max(initial=0)) + 1
     is_turned = b > c
-    _, number = np.unique((a * count + np.minimum(b, c)), return_inverse=True)
+    _, number = np.unique(a * count + np.minimum(b, c), return_inverse=True)
     _, number = np.unique(number * np.int64(count) + np.maximum(b, c), return_inverse=True)
     from_one = np.bincount(number, ~is_turned) > 0
     from_other = np.bincount(number, is_turned) > 0
-    both: NDArray[np.bool_] = (from_one & from_other)[number]
-    return both
+    return number.astype(np.int64), (from_one & from_other)[number]
 
 
 def _closed_parts(edges: NDArray[np.int64], is_even: NDArray[np.bool_]) -> NDArray[np.bool_]:
