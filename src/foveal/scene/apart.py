@@ -48,8 +48,8 @@ def apart(work: Callable[[Callable[[], None]], T], /) -> T:
             errors.append(error)
 
     thread = threading.Thread(target=run, name=NAME, daemon=True)
-    thread.start()
     try:
+        thread.start()  # which waits a little, too, and may be interrupted there
         while thread.is_alive():
             thread.join(_BEAT_S)
     finally:
