@@ -162,7 +162,11 @@ def test_layers_that_move_are_named_by_the_light(lit):
     assert json.loads(lit.read_bytes())["light"] == data["light"]
     with pytest.raises(FovealError, match="no layer that stays"):
         foveal.shadow(lit, lit.parent / "other.fov", light=Directional((0, 0, -1)), resolution=16)
-    for moving, words in ((["nobody"], "no layer has that name"), ("statue", "must be a list"), ([1], "a list")):
+    for moving, words in (
+        (["nobody"], "no layer has that name"),
+        ("statue", "must be a list"),
+        ([1], "a list"),
+    ):
         data["light"]["moving"] = moving
         lit.write_text(json.dumps(data))
         with pytest.raises(FovealError, match=words):

@@ -99,7 +99,7 @@ def test_no_tree_keeps_fewer_values(pool):
 @pytest.mark.parametrize("is_strict", [False, True])
 def test_pixels_are_what_their_rays_meet(pool, light, is_strict):
     casters = casters_of(mixed())
-    levels = 4
+    levels = 3
     unit = 1 << (PLACE_BITS - levels)
     for projection in LIGHTS[light].projections(casters.positions, 1 << levels):
         flat = flatten(casters, projection)
