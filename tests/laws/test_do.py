@@ -74,20 +74,17 @@ def test_ctrl_c_lets_the_child_end_in_its_own_time_and_with_its_own_code():
     process.stdout.close()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a script of a shell stands for Python")
-@pytest.mark.parametrize(("fails", "code"), [("nothing", 0), ("lint", 1), ("pytest", 1)])
+@pytest.mark.parametrize(("fails", "code"), [("nothing", 0), ("lint", 1), ("hatch_build", 1), ("pytest", 1)])
 def test_what_fails_beside_the_tests_fails_too(tmp_path, fails, code):
-    """Stand-ins for Python and a check, one of which fails; what the check says is shown in any case."""
-    for name in ("python", "lint"):
-        stub = tmp_path / name
-        stub.write_text(f'#!/bin/sh\necho "{name} $*"\ncase "{name} $*" in *{fails}*) exit 1;; esac\n')
-        stub.chmod(0o755)
+    """Stand-ins for all that is run, one of which fails; what the checks say is shown in any case."""
+    for name in ("pytest", "lint", "hatch_build"):
+        words = f"import sys; print({name!r}, *sys.argv[1:]); sys.exit({int(name == fails)})"
+        (tmp_path / f"{name}.py").write_text(words)
     program = (
-        f"import runpy; test = runpy.run_path({str(DO)!r})['test']; known = test.__globals__;"
-        f"known['PYTHON'] = {str(tmp_path / 'python')!r}; known['CHECKS'] = (({str(tmp_path / 'lint')!r},),);"
-        "test([])"
+        f"import pathlib, runpy, sys; test = runpy.run_path({str(DO)!r})['test']; known = test.__globals__;"
+        f"known['ROOT'] = pathlib.Path({str(tmp_path)!r}); known['PYTHON'] = sys.executable;"
+        "known['CHECKS'] = ((sys.executable, 'lint.py'),); test([])"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == code
-    assert "python -m pytest\n" in done.stdout
-    assert done.stdout.endswith("lint \npython hatch_build.py run test\n")
+    assert done.stdout.splitlines() == ["pytest", "lint", "hatch_build run test"]

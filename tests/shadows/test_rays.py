@@ -7,6 +7,8 @@ from foveal.shadows import Directional, build
 
 from .scenes import mixed, solids
 
+_NO_EMBREE = "embreex has wheels for x86_64 alone; rays of NumPy are asked in any case"
+
 LIGHT = Directional((0.45, 0.3, -0.84))
 CLEAR = 1e-6
 """Of the depth of the scene, between a receiver and every surface: a map's corners are 2^-31 of its side off,
@@ -75,8 +77,8 @@ def test_rays_agree(scene, resolution):
 
 def test_embree_agrees():
     """With one ray to the light for each receiver, clear of edges by what float32 is off."""
-    scenes = pytest.importorskip("embreex.rtcore_scene")
-    construction = pytest.importorskip("embreex.mesh_construction")
+    scenes = pytest.importorskip("embreex.rtcore_scene", reason=_NO_EMBREE)
+    construction = pytest.importorskip("embreex.mesh_construction", reason=_NO_EMBREE)
     meshes = solids()
     triangles, is_solid = soup(meshes)
     shadow = build(meshes, LIGHT, resolution=4096)
