@@ -3,7 +3,6 @@
 import json
 import math
 import struct
-import zlib
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from foveal.refine import Criteria, Region, sharp_edges
 from foveal.scene.cage_file import control_mesh, is_cage, read_cage, write_cage
 from foveal.scene.refinement import Refinement, chosen, refinement_json, refinement_of
 from scene import golden_cage
-from scene.damage import assert_flips_refused
+from scene.damage import assert_flips_refused, rewritten
 
 PLAIN = Refinement("sqrt3", Criteria())
 
@@ -28,19 +27,6 @@ def small(tmp_path_factory):
     path = tmp_path_factory.mktemp("cages") / "small.fov"
     write_cage(tetrahedron(), path, refinement=PLAIN)
     return path.read_bytes()
-
-
-def rewritten(data, header=None, first=None):
-    """The same file with other words in its header, or another chunk, under checksums that are right."""
-    with open_container(data) as file:
-        words, chunk = {**file.header, **(header or {})}, file.chunk(0) if first is None else first
-        chunks = [chunk, *(file.chunk(i) for i in range(1, len(file)))]
-    text = json.dumps({key: value for key, value in words.items() if value is not ...}).encode()
-    text += b" " * (-len(text) % 4)
-    index = b"".join(struct.pack("<II", len(chunk), zlib.crc32(chunk)) for chunk in chunks)
-    check = zlib.crc32(index, zlib.crc32(text))
-    prefix = struct.pack("<4sHHIII", b"FOV\x1a", 1, 0, len(text), len(chunks), check)
-    return prefix + text + index + b"".join(chunk + bytes(-len(chunk) % 4) for chunk in chunks)
 
 
 def read(data):

@@ -23,8 +23,8 @@ from foveal.scene.cage_file import read_cage, write_cage
 from foveal.scene.cage_polygons import PolygonCounts, told
 from foveal.scene.refinement import Refinement, chosen, refinement_json, refinement_of
 from scene import golden_cage
-from scene.damage import assert_flips_refused
-from scene.test_cage_file import read, rewritten
+from scene.damage import assert_flips_refused, rewritten
+from scene.test_cage_file import read
 
 PATCHES = Refinement("catmull-clark", Criteria(), "limit")
 FIELDS = [field for field in golden_cage.POLYGONS.__dataclass_fields__ if field != "boundary"]

@@ -18,8 +18,8 @@ from foveal.scene.refine import refine
 from foveal.server.warm import begun
 from refine.test_slates_placements import MATRICES
 from scene import golden_cage
-from scene.damage import assert_flips_refused
-from scene.test_cage_file import read, rewritten
+from scene.damage import assert_flips_refused, rewritten
+from scene.test_cage_file import read
 from scene.test_cage_polygons import are_equal
 
 SCHEME = "catmull-clark"

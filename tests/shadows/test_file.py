@@ -2,7 +2,6 @@
 
 import json
 import struct
-import zlib
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,6 +12,7 @@ from foveal.container import open_container
 from foveal.mesh.shapes import icosphere
 from foveal.shadows import AreaLight, Directional, Point, build
 from foveal.shadows.file import read_parts, read_shadow, write_shadow
+from scene.damage import rewritten
 from shadows import golden_trees
 from shadows.random_trees import assert_same, random_tree
 
@@ -29,19 +29,6 @@ def small(tmp_path_factory):
     path = tmp_path_factory.mktemp("shadows") / "small.fov"
     golden_trees.write("any", path)
     return path.read_bytes()
-
-
-def rewritten(data, header=None, first=None):
-    """The same file with other words in its header, or another chunk 0, under checksums that are right."""
-    with open_container(data) as file:
-        words, chunk = {**file.header, **(header or {})}, file.chunk(0) if first is None else first
-        chunks = [chunk, *(file.chunk(i) for i in range(1, len(file)))]
-    text = json.dumps({key: value for key, value in words.items() if value is not ...}).encode()
-    text += b" " * (-len(text) % 4)
-    index = b"".join(struct.pack("<II", len(chunk), zlib.crc32(chunk)) for chunk in chunks)
-    check = zlib.crc32(index, zlib.crc32(text))
-    prefix = struct.pack("<4sHHIII", b"FOV\x1a", 1, 0, len(text), len(chunks), check)
-    return prefix + text + index + b"".join(chunk + bytes(-len(chunk) % 4) for chunk in chunks)
 
 
 @pytest.mark.parametrize("name", LIGHTS)

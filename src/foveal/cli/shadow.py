@@ -90,7 +90,8 @@ def shadow(
     """Precompute the shadows of a light.
 
     They are those of a shadow map of up to a million pixels a side, lossless, in little memory. Of a
-    scene.json all visible layers cast. Show them with --shadow of view, or as "light" of a scene.json.
+    scene.json all visible layers cast, but those that move. Show them with --shadow of view, or as
+    "light" of a scene.json.
     """
     import foveal
 

@@ -81,7 +81,8 @@ def shadow(
     Parameters
     ----------
     source : path, TriMesh, PolyMesh or Scene
-        What casts: a mesh, the finest level of a `.fov`, or all visible layers of a scene. A control mesh
+        What casts: a mesh, the finest level of a `.fov`, or all visible layers of a scene but those
+        that its light names as moving. A control mesh
         casts as it is refined everywhere.
     output : path
         Ends in `.fov`; replaced if it is there, and only when the new one is whole.

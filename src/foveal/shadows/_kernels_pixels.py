@@ -12,7 +12,7 @@ def up_from_pixels(up, lower, upper, levels, most):
 
     False where the stream has no room for more.
     """
-    images, side = lower.shape[0], lower.shape[1]
+    images = lower.shape[0]
     dimensions = 3 if up.counts.shape[1] == 8 else 2
     far = 4294967295
     for code in range((1 << dimensions * levels) - 1, -1, -1):
@@ -27,7 +27,7 @@ def up_from_pixels(up, lower, upper, levels, most):
                 z |= (part >> 2 & 1) << bit
         if z >= images:
             push_one(up, levels, 0, far, most)
-        elif x < side and y < side:
+        else:
             push_one(up, levels, lower[z, y, x], upper[z, y, x], most)
     return True
 

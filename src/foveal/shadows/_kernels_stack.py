@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from foveal.base.jit import lean
 
-from ._kernels_stream import COUNT, IS_INNER, has_room, push_one
+from ._kernels_stream import COUNT, IS_INNER, before, has_room, push_one
 
 FAR = 4294967295
 
@@ -89,12 +89,9 @@ def up_from_squares(up, squares, levels, spread, nodes, most):
             level += 1
             code = 8 * code + 7
             continue
-        while level > 0 and code & 7 == 0:
-            level -= 1
-            code >>= 3
+        level, code = before(level, code, 3)
         if level == 0:
             return True
-        code -= 1
 
 
 @lean

@@ -101,6 +101,18 @@ def push(up, level, count, kind, most):
         level -= 1
 
 
+@lean
+def before(level, code, bits):
+    """Level and number of the node to be written after this one and all below it: level 0 where none is left.
+
+    Children are numbered by the lowest `bits`, and the last child comes first.
+    """
+    while level > 0 and code & ((1 << bits) - 1) == 0:
+        level -= 1
+        code >>= bits
+    return level, code - 1
+
+
 class Down(NamedTuple):
     """A stream being read: values are chosen, the lists of a Tree filled. Level 0 is the stream's root."""
 

@@ -13,7 +13,7 @@ from foveal.base.jit import lean
 
 from ._kernels_cover import common_interval
 from ._kernels_flat import BACK, FRONT, covers, depth_at, meets
-from ._kernels_stream import has_room, push_one
+from ._kernels_stream import before, has_room, push_one
 
 FAR = 4294967295
 BLOCK_LEVELS = 3
@@ -62,9 +62,8 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
         y0 = (even_bits(code >> 1) << size) * unit + (unit >> 1)
         begin, end = work.list_starts[level], work.list_starts[level + 1]
         if level > 0:
-            if 2 * begin - work.list_starts[level - 1] > len(
-                work.lists
-            ):  # all of the tile above may meet this one
+            # all of the tile above may meet this one
+            if 2 * begin - work.list_starts[level - 1] > len(work.lists):
                 return NO_LIST
             end = kept(flat, work, level, x0, y0, x0 + span, y0 + span)
         room = len(work.hits) >> (2 * size)
@@ -87,12 +86,9 @@ def up_from_triangles(up, flat, work, count, place, levels, bits, is_strict, is_
             level += 1
             code = 4 * code + 3
             continue
-        while level > 0 and code & 3 == 0:
-            level -= 1
-            code >>= 2
+        level, code = before(level, code, 2)
         if level == 0:
             return DONE
-        code -= 1
 
 
 @lean
