@@ -113,7 +113,7 @@ class ShadowMap:
         return self._shares(points, normals, image, radius=0) > 0.5
 
     def pcf(
-        self, points: ArrayLike, /, *, footprint: int = 3, normals: ArrayLike | None = None, image: int = 0
+        self, points: ArrayLike, /, footprint: int = 3, *, normals: ArrayLike | None = None, image: int = 0
     ) -> NDArray[np.float32]:
         """How much of the pixels around points is lit (percentage-closer filtering).
 
@@ -132,7 +132,15 @@ class ShadowMap:
         References
         ----------
         Reeves, Salesin, Cook 1987. Rendering antialiased shadows with depth maps.
-        Scandolo, Bauszat, Eisemann 2016, section 4.
+        Scandolo, Bauszat, Eisemann 2016, section 3.3.
+
+        Examples
+        --------
+        >>> from foveal.mesh.shapes import icosphere
+        >>> from foveal.shadows import Directional, build
+        >>> shadow = build(icosphere(3), Directional((0, 0, -1)), resolution=64)
+        >>> shadow.pcf([[0, 0, -2], [0.98, 0, -2], [1.2, 0, -2]], 5).round(2)
+        array([0. , 0.4, 1. ], dtype=float32)
         """
         if not (1 <= footprint <= MOST_FOOTPRINT and footprint % 2 == 1):
             raise ValueError(f"footprint must be odd, from 1 to {MOST_FOOTPRINT}, got {footprint}")
