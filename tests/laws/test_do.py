@@ -72,19 +72,3 @@ def test_ctrl_c_lets_the_child_end_in_its_own_time_and_with_its_own_code():
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does it
     assert process.wait(timeout=30) == 7
     process.stdout.close()
-
-
-@pytest.mark.parametrize(("fails", "code"), [("nothing", 0), ("lint", 1), ("hatch_build", 1), ("pytest", 1)])
-def test_what_fails_beside_the_tests_fails_too(tmp_path, fails, code):
-    """Stand-ins for all that is run, one of which fails; what the checks say is shown in any case."""
-    for name in ("pytest", "lint", "hatch_build"):
-        words = f"import sys; print({name!r}, *sys.argv[1:]); sys.exit({int(name == fails)})"
-        (tmp_path / f"{name}.py").write_text(words)
-    program = (
-        f"import pathlib, runpy, sys; test = runpy.run_path({str(DO)!r})['test']; known = test.__globals__;"
-        f"known['ROOT'] = pathlib.Path({str(tmp_path)!r}); known['PYTHON'] = sys.executable;"
-        "known['CHECKS'] = ((sys.executable, 'lint.py'),); test([])"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert done.returncode == code
-    assert done.stdout.splitlines() == ["pytest", "lint", "hatch_build run test"]
